@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <takt/axis/axis_params.hpp>
+#include <takt/fieldbus/fieldbus_params.hpp>
+#include <takt/program/program_params.hpp>
+#include <takt/scheduler/scheduler_params.hpp>
+#include <takt/twin/twin_params.hpp>
+
+namespace takt::config {
+
+/// Everything a machine.xml says, checked. Plain data; each room takes the part that is its own.
+struct MachineConfig {
+    std::string file;
+    std::string name;
+    fieldbus::NetworkParams network;
+    scheduler::SchedulerParams scheduler;
+    std::vector<axis::AxisParams> axes;
+    std::vector<program::ProgramParams> programs;
+    twin::TwinParams twin;  ///< one device for each slave, defaults where <Twin> is silent
+};
+
+}  // namespace takt::config
