@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <takt/wire/byte_io.hpp>
+
 namespace takt::twin::test {
 
 using std::chrono::microseconds;
@@ -257,12 +259,10 @@ std::uint64_t TestMaster::input(std::size_t device, std::size_t at, std::size_t 
 void TestMaster::command(std::size_t device, std::uint16_t controlWord, std::int8_t mode,
                          std::int32_t target) {
     outputs_.resize(twin_.deviceCount() * outSize_, 0);
-    Bytes b = le16(controlWord);
-    b.push_back(static_cast<std::uint8_t>(mode));
-    const Bytes position32 = le32(static_cast<std::uint32_t>(target));
-    b.insert(b.end(), position32.begin(), position32.end());
-    std::copy(b.begin(), b.end(),
-              outputs_.begin() + static_cast<std::ptrdiff_t>(device * outSize_));
+    const auto own = std::span{outputs_}.subspan(device * outSize_, 7);
+    wire::store16(own, 0, controlWord);
+    own[2] = static_cast<std::uint8_t>(mode);
+    wire::store32(own, 3, static_cast<std::uint32_t>(target));
 }
 
 bool TestMaster::enable(std::size_t device, std::int8_t mode) {
