@@ -25,7 +25,7 @@ TEST(PlotData, KeepsShortTracesPointByPoint) {
     ASSERT_EQ(curve.size(), 5U);
     EXPECT_EQ(curve[3].low, 6.0);
     EXPECT_EQ(curve[3].high, 6.0);
-    EXPECT_DOUBLE_EQ(curve[3].time, 0.003);
+    EXPECT_DOUBLE_EQ(curve[3].lowTime, 0.003);
 }
 
 TEST(PlotData, NeverHoldsMoreBinsThanAskedFor) {
@@ -53,13 +53,13 @@ TEST(PlotData, BinsCoverTheRowsWithoutGapOrOverlap) {
     const auto curve = data.curve("v");
     for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
         EXPECT_EQ(curve[i].high + 1.0, curve[i + 1].low) << i;
-        EXPECT_DOUBLE_EQ(curve[i].time * 1000.0, curve[i].low) << i;
+        EXPECT_DOUBLE_EQ(curve[i].lowTime * 1000.0, curve[i].low) << i;
     }
     EXPECT_EQ(curve.front().low, 0.0);
     EXPECT_EQ(curve.back().high, 499.0);
 }
 
-TEST(PlotData, RemembersWhichExtremeCameFirst) {
+TEST(PlotData, RemembersWhenTheExtremesWereReached) {
     PlotData data{Columns, "t_ns", Wanted, 2};
     take(data, 0, 0.0);
     take(data, 1, 5.0);
@@ -67,8 +67,8 @@ TEST(PlotData, RemembersWhichExtremeCameFirst) {
     take(data, 3, 0.0);
     const auto curve = data.curve("v");
     ASSERT_EQ(curve.size(), 2U);
-    EXPECT_TRUE(curve[0].lowFirst);
-    EXPECT_FALSE(curve[1].lowFirst);
+    EXPECT_LT(curve[0].lowTime, curve[0].highTime);
+    EXPECT_GT(curve[1].lowTime, curve[1].highTime);
 }
 
 TEST(PlotData, LeavesOutValuesThatAreNoNumbers) {

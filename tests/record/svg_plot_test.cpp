@@ -59,7 +59,7 @@ TEST(SvgPlot, IsTheSameTextForTheSameData) {
 }
 
 TEST(SvgPlot, StaysSmallForALongTrace) {
-    EXPECT_LT(drawn(200000).size(), 600000U);
+    EXPECT_LT(drawn(200000).size(), 400000U);
 }
 
 TEST(SvgPlot, EscapesNamesForXml) {

@@ -12,17 +12,15 @@ constexpr std::size_t MaxRuns = 8192;
 
 PlotBin merged(const PlotBin& a, const PlotBin& b) {
     if (!b.valid) return a;
-    PlotBin bin = b;
-    bin.time = a.time;
-    if (!a.valid) return bin;
-    const bool lowInFirst = a.low <= b.low;
-    const bool highInFirst = a.high >= b.high;
-    bin.low = lowInFirst ? a.low : b.low;
-    bin.high = highInFirst ? a.high : b.high;
-    if (lowInFirst != highInFirst) {
-        bin.lowFirst = lowInFirst;
-    } else {
-        bin.lowFirst = lowInFirst ? a.lowFirst : b.lowFirst;
+    if (!a.valid) return b;
+    PlotBin bin = a;
+    if (b.low < a.low) {
+        bin.low = b.low;
+        bin.lowTime = b.lowTime;
+    }
+    if (b.high > a.high) {
+        bin.high = b.high;
+        bin.highTime = b.highTime;
     }
     return bin;
 }
@@ -79,7 +77,7 @@ void PlotData::take(std::span<const TraceCell> row) {
 }
 
 void PlotData::takeNumber(Kept& kept, double time, double value, bool newBin) const {
-    const PlotBin one{time, value, value, true, std::isfinite(value)};
+    const PlotBin one{value, value, time, time, std::isfinite(value)};
     if (newBin) {
         kept.bins.push_back(one);
     } else {

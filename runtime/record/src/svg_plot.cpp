@@ -257,9 +257,11 @@ void Painter::curve(const PlotCurve& curve, const Range& range) {
             endPiece();  // a gap where the trace has no finite number
             continue;
         }
-        const double px = x(bin.time);
-        points.push_back({px, y(bin.lowFirst ? bin.low : bin.high)});
-        if (bin.low != bin.high) points.push_back({px, y(bin.lowFirst ? bin.high : bin.low)});
+        const Point low{x(bin.lowTime), y(bin.low)};
+        const Point high{x(bin.highTime), y(bin.high)};
+        const bool lowFirst = bin.lowTime <= bin.highTime;
+        points.push_back(lowFirst ? low : high);
+        if (bin.low != bin.high) points.push_back(lowFirst ? high : low);
     }
     endPiece();
     if (path.empty()) return;

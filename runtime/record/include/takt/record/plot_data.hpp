@@ -12,11 +12,11 @@ namespace takt::record {
 
 /// A run of rows drawn as one pixel: what the curve did in it.
 struct PlotBin {
-    double time{0.0};  ///< of its first row, s
     double low{0.0};
     double high{0.0};
-    bool lowFirst{true};  ///< the low came before the high
-    bool valid{false};    ///< any finite value in it
+    double lowTime{0.0};  ///< when the low was reached first, s
+    double highTime{0.0};
+    bool valid{false};  ///< any finite value in it
 };
 
 /// A stretch of time in which a Text column kept its value.
