@@ -27,6 +27,7 @@ enum { HitExitCode = 99, MaxFrames = 48 };
 
 /* Initial-exec: the flag lies in the thread's own block from the start; reading it never allocates. */
 static __thread bool armed __attribute__((tls_model("initial-exec")));
+static __thread bool mayThrow __attribute__((tls_model("initial-exec")));
 static unsigned long armings;
 
 extern void* __libc_malloc(size_t size);
@@ -41,6 +42,11 @@ void taktTrapArm(bool on) {
     armed = on;
     if (on) __atomic_add_fetch(&armings, 1, __ATOMIC_RELAXED);
 }
+
+/* Around the call of a user program: it may throw, and its exception needs memory until it is caught. */
+void taktTrapMayThrow(bool on);
+
+void taktTrapMayThrow(bool on) { mayThrow = on; }
 
 static void say(const char* text) {
     if (syscall(SYS_write, STDERR_FILENO, text, strlen(text)) < 0) _exit(HitExitCode);
@@ -254,6 +260,14 @@ int fprintf(FILE* file, const char* format, ...) {
 /* ---- what C++ and the loader do behind the scenes ---- */
 
 TRAPPED(void*, dlopen, (const char* path, int flags), (path, flags))
+
+void* __cxa_allocate_exception(size_t size);
+
+void* __cxa_allocate_exception(size_t size) {
+    static void* slot;
+    if (mayThrow) armed = false; /* the catch path arms again */
+    return ((void* (*)(size_t))next(&slot, "__cxa_allocate_exception"))(size);
+}
 
 void __cxa_throw(void* object, void* type, void (*destroy)(void*)) __attribute__((noreturn));
 

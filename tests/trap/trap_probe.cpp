@@ -116,6 +116,19 @@ int main(int argc, char** argv) {
         const takt::core::CycleGuard guard;
         const takt::core::CycleGuardPause pause;
         act();
+    } else if (where == "program") {
+        const takt::core::CycleGuard guard;
+        {
+            const takt::core::ProgramCallGuard call;
+            act();
+        }
+    } else if (where == "afterprogram") {
+        const takt::core::CycleGuard guard;
+        {
+            const takt::core::ProgramCallGuard call;
+            deeds().at("throw")();
+        }
+        act();
     } else if (where == "outside") {
         { const takt::core::CycleGuard guard; }
         act();

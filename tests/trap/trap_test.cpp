@@ -64,6 +64,15 @@ INSTANTIATE_TEST_SUITE_P(Everything, TrapFor,
                                          "puts", "cout", "dlopen", "mmap", "static", "throw"),
                          [](const auto& deed) { return std::string{deed.param}; });
 
+TEST(Trap, LetsAProgramThrowButNotAllocate) {
+    EXPECT_EQ(probe("throw", "program").code, 0);
+    EXPECT_EQ(probe("malloc", "program").code, 99);
+}
+
+TEST(Trap, IsArmedAgainAfterAProgramThatThrew) {
+    EXPECT_EQ(probe("malloc", "afterprogram").code, 99);
+}
+
 TEST(Trap, LetsAnEmptyCyclePass) {
     EXPECT_EQ(probe("nothing", "inside").code, 0);
 }
