@@ -219,7 +219,8 @@ void noteStop(AxisView& view, const Command& command) noexcept {
 }
 
 void noteRelease(AxisView& view, const Command& command) noexcept {
-    if (view.state != AxisState::Stopping || view.active != command.replaces) return;
+    if (view.state != AxisState::Stopping || view.active == CommandId::None) return;
+    if (view.active != command.replaces) return;
     view.stopReleased = true;
     if (!view.stopDone) return;
     view.state = AxisState::Standstill;
