@@ -1,0 +1,135 @@
+"""What the judges of whole-machine runs need from a machine.xml, read without takt's own reader.
+
+Units are written out in the file (`120 mm`, `2000 mm/s^2`, `1 ms`); numbers are kept as exact fractions
+so that a ratio is the ratio that was written.
+"""
+import fractions
+import pathlib
+import re
+import xml.etree.ElementTree as ElementTree
+
+TIME_UNITS = {"ns": fractions.Fraction(1, 10**9), "us": fractions.Fraction(1, 10**6),
+              "ms": fractions.Fraction(1, 1000), "s": fractions.Fraction(1)}
+
+
+class MachineError(Exception):
+    """The machine file does not say what a judge must know."""
+
+
+def number(text):
+    """'1.25 mm/s' -> (5/4, 'mm/s'); a unit may be missing."""
+    match = re.fullmatch(r"\s*([-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*"
+                         r"([A-Za-z%]+(?:[ /][A-Za-z]+)?(?:\^[0-9])?)?\s*", text)
+    if not match:
+        raise MachineError(f"'{text}' is not a number with a unit")
+    return fractions.Fraction(match.group(1)), match.group(2) or ""
+
+
+def ratio(text):
+    """'1/10' or '2.5' -> exact fraction."""
+    above, _, below = text.partition("/")
+    return number(above)[0] / (number(below)[0] if below else 1)
+
+
+def seconds(text):
+    value, unit = number(text)
+    if unit not in TIME_UNITS:
+        raise MachineError(f"'{text}' is not a time; allowed: {', '.join(TIME_UNITS)}")
+    return value * TIME_UNITS[unit]
+
+
+class Axis:
+    """Scaling as an exact ratio (counts per user unit, signed) and the limits as doubles."""
+
+    def __init__(self, element):
+        self.name = element.get("name")
+        scaling = child(element, "Scaling", self.name)
+        turn = number(attribute(scaling, "perTurn", self.name, "1"))[0]
+        self.counts_per_unit = (int(attribute(scaling, "countsPerTurn", self.name)) *
+                                ratio(scaling.get("gear", "1")) / turn)
+        if scaling.get("reversed", "false").strip() in ("true", "1"):
+            self.counts_per_unit = -self.counts_per_unit
+        modulo = scaling.get("modulo")
+        self.modulo = float(number(modulo)[0]) if modulo else None
+        limits = child(element, "Limits", self.name)
+
+        def limit(name, default=None):
+            text = limits.get(name)
+            return float(number(text)[0]) if text is not None else default
+
+        self.velocity = limit("velocity")
+        self.acceleration = limit("acceleration")
+        self.deceleration = limit("deceleration", self.acceleration)
+        self.jerk = limit("jerk")
+        self.stop_deceleration = limit("stopDeceleration", self.deceleration)
+        self.stop_jerk = limit("stopJerk", self.jerk)
+        if None in (self.velocity, self.acceleration, self.jerk):
+            raise MachineError(f"axis {self.name}: velocity, acceleration and jerk limits are needed")
+
+
+class Slave:
+    """One device on the wire and whether it takes part in the process data."""
+
+    def __init__(self, name, outputs, inputs):
+        self.name = name
+        self.outputs = outputs
+        self.inputs = inputs
+
+
+def child(element, tag, who):
+    found = element.find(tag)
+    if found is None:
+        raise MachineError(f"axis {who}: no <{tag}>")
+    return found
+
+
+def attribute(element, name, who, default=None):
+    value = element.get(name, default)
+    if value is None:
+        raise MachineError(f"axis {who}: <{element.tag}> has no attribute {name}")
+    return value
+
+
+def esi_devices(path):
+    """Type name -> (has outputs, has inputs) of every device in an ESI file."""
+    devices = {}
+    for device in ElementTree.parse(path).getroot().iter("Device"):
+        kind = device.find("Type")
+        if kind is None or not kind.text:
+            continue
+        assigned = {tag: any(pdo.get("Sm") is not None for pdo in device.iter(tag))
+                    for tag in ("RxPdo", "TxPdo")}
+        devices[kind.text.strip()] = (assigned["RxPdo"], assigned["TxPdo"])
+    return devices
+
+
+class Machine:
+    def __init__(self, path):
+        path = pathlib.Path(path)
+        root = ElementTree.parse(path).getroot()
+        network = root.find("Network")
+        if network is None:
+            raise MachineError(f"{path}: no <Network>")
+        self.cycle = float(seconds(network.get("cycle", "1 ms")))
+        self.axes = {axis.get("name"): axis for axis in root.iter("Axis")}
+        devices = {}
+        for esi in root.iter("Esi"):
+            devices.update(esi_devices(path.parent / esi.get("file")))
+        self.slaves = [self._slave(element, devices, path) for element in network.iter("Slave")]
+
+    @staticmethod
+    def _slave(element, devices, path):
+        kind = element.get("device")
+        if kind not in devices:
+            raise MachineError(f"{path}: slave {element.get('name')}: device {kind} is in no ESI file")
+        outputs, inputs = devices[kind]
+        for pdo in element.iter("Pdo"):
+            index = int(pdo.get("index", "0").replace("#", "0"), 0)
+            outputs = outputs or 0x1600 <= index < 0x1800
+            inputs = inputs or 0x1A00 <= index < 0x1C00
+        return Slave(element.get("name"), outputs, inputs)
+
+    def axis(self, name):
+        if name not in self.axes:
+            raise MachineError(f"no axis {name}; the file has {', '.join(self.axes) or 'none'}")
+        return Axis(self.axes[name])
