@@ -16,6 +16,7 @@ LENGTH_UNITS = {"mm": fractions.Fraction(1), "cm": fractions.Fraction(10), "m": 
                 **dict.fromkeys(("um", "\u00b5m", "\u03bcm"), fractions.Fraction(1, 1000)),
                 "deg": fractions.Fraction(1), "\u00b0": fractions.Fraction(1)}
 RAMPS_PER_SECOND = 10.0  # the jerk of an axis that is told none: acceleration builds up in 100 ms
+COUNTS_AS_DELIVERED = {"CD300": "10000", "RA": "32768"}
 POWERS = {"": 1, "^2": 2, "\u00b2": 2, "^3": 3, "\u00b3": 3}
 
 
@@ -34,8 +35,16 @@ def number(text):
 
 def ratio(text):
     """'1/10' or '2.5' -> exact fraction."""
-    above, _, below = text.partition("/")
+    above, _, below = text.replace(":", "/").partition("/")
     return number(above)[0] / (number(below)[0] if below else 1)
+
+
+def whole(text):
+    """Decimal, or hexadecimal as 0x1A or #x1A."""
+    try:
+        return int(text.strip().replace("#x", "0x").replace("#X", "0x"), 0)
+    except ValueError:
+        raise MachineError(f"'{text}' is not a whole number") from None
 
 
 def seconds(text):
@@ -61,12 +70,14 @@ def motion(text):
 class Axis:
     """Scaling as an exact ratio (counts per user unit, signed) and the limits as doubles."""
 
-    def __init__(self, element):
+    def __init__(self, element, drive_types):
         self.name = element.get("name")
         scaling = child(element, "Scaling", self.name)
+        counts = scaling.get("countsPerTurn")
+        if counts is None:
+            counts = self._counts_as_delivered(drive_types[child(element, "Drive", self.name).get("slave")])
         turn = motion(attribute(scaling, "perTurn", self.name))
-        self.counts_per_unit = (int(attribute(scaling, "countsPerTurn", self.name)) *
-                                ratio(scaling.get("gear", "1")) / turn)
+        self.counts_per_unit = whole(counts) * ratio(scaling.get("gear", "1")) / turn
         if scaling.get("reversed", "false").strip() in ("true", "1"):
             self.counts_per_unit = -self.counts_per_unit
         modulo = scaling.get("modulo")
@@ -86,6 +97,13 @@ class Axis:
         self.jerk = limit("jerk", RAMPS_PER_SECOND * steepest)
         self.stop_deceleration = limit("stopDeceleration", steepest)
         self.stop_jerk = limit("stopJerk", self.jerk)
+
+
+    def _counts_as_delivered(self, drive_type):
+        for prefix, counts in COUNTS_AS_DELIVERED.items():
+            if drive_type.startswith(prefix):
+                return counts
+        raise MachineError(f"axis {self.name}: <Scaling> has no countsPerTurn")
 
 
 class Slave:
@@ -136,6 +154,7 @@ class Machine:
         devices = {}
         for esi in root.iter("Esi"):
             devices.update(esi_devices(path.parent / esi.get("file")))
+        self.drive_types = {s.get("name"): s.get("device", "") for s in network.iter("Slave")}
         self.slaves = [self._slave(element, devices, path) for element in network.iter("Slave")]
 
     @staticmethod
@@ -145,7 +164,7 @@ class Machine:
             raise MachineError(f"{path}: slave {element.get('name')}: device {kind} is in no ESI file")
         outputs, inputs = devices[kind]
         for pdo in element.iter("Pdo"):
-            index = int(pdo.get("index", "0").replace("#", "0"), 0)
+            index = whole(pdo.get("index", "0"))
             outputs = outputs or 0x1600 <= index < 0x1800
             inputs = inputs or 0x1A00 <= index < 0x1C00
         return Slave(element.get("name"), outputs, inputs)
@@ -153,4 +172,4 @@ class Machine:
     def axis(self, name):
         if name not in self.axes:
             raise MachineError(f"no axis {name}; the file has {', '.join(self.axes) or 'none'}")
-        return Axis(self.axes[name])
+        return Axis(self.axes[name], self.drive_types)
