@@ -63,7 +63,8 @@ class JudgingATrace(unittest.TestCase):
 
     def test_a_csv_file_is_read_as_it_was_written(self):
         columns = self.trace.axes["X"]
-        order = ["state", "set", "setVel", "setAcc", "target", "actual", "actualVel", "lag", "statusword"]
+        order = ["state", "set", "setVel", "setAcc", "target", "actual", "actualVel", "lag", "statusword",
+                 "mode"]
         with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
             file.write("cycle,t_ns," + ",".join(f"X.{c}" for c in order) + "\n")
             for i, cycle in enumerate(self.trace.cycles):
