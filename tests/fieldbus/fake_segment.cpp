@@ -1,6 +1,7 @@
 #include "fake_segment.hpp"
 
 #include <algorithm>
+#include <takt/core/cycle_guard.hpp>
 
 namespace takt::test {
 
@@ -68,6 +69,7 @@ void FakeDevice::emergency(std::uint16_t errorCode) {
 }
 
 wire::LinkStatus FakeSegment::send(std::span<wire::Frame> frames) noexcept {
+    const core::CycleGuardPause outside;
     if (down) return wire::LinkStatus::Down;
     for (wire::Frame& frame : frames) {
         frame.stamp = clock_.now();
@@ -83,6 +85,7 @@ wire::LinkStatus FakeSegment::send(std::span<wire::Frame> frames) noexcept {
 }
 
 std::size_t FakeSegment::receive(std::span<wire::Frame> slots, core::HostTime deadline) noexcept {
+    const core::CycleGuardPause outside;
     std::size_t got = 0;
     while (got < slots.size() && !replies.empty()) {
         slots[got] = replies.front();
