@@ -51,7 +51,7 @@ void SimDrive::exchange() {
         health.inputsFresh = true;
         health.lostInRow = 0;
         inputs = latched_;
-        takeOutputs();
+        if (health.operational) takeOutputs();
     }
     stepState();
     stepMotor();

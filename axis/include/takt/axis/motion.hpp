@@ -53,6 +53,8 @@ public:
     [[nodiscard]] std::uint64_t steps() const noexcept { return steps_; }
 
 private:
+    friend struct AxisTestAccess;
+
     [[nodiscard]] ErrorId beginPosition(core::Position target, const Dynamics& dynamics) noexcept;
     [[nodiscard]] ErrorId beginVelocity(const Dynamics& dynamics) noexcept;
     [[nodiscard]] ErrorId beginBraking(const Dynamics& dynamics) noexcept;
