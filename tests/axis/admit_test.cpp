@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-
 #include <takt/axis/admit.hpp>
 
 #include "axis_rig.hpp"

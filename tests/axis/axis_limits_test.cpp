@@ -29,7 +29,9 @@ axis::Command turnTo(double position, axis::Direction direction, double velocity
     return c;
 }
 
-double folded(const Rig& rig) { return rig.x.view().folded(rig.x.status().set).count(); }
+double folded(const Rig& rig) {
+    return rig.x.view().folded(rig.x.status().set).count();
+}
 
 /// Distance travelled by one move from `from` to `to`, both in one turn, from standstill.
 double travel(double from, double to, axis::Direction direction) {
@@ -146,7 +148,8 @@ TEST(Modulo, TravelsByDirection) {
 
 TEST(Modulo, DoesNotMoveWhenItIsThere) {
     using axis::Direction;
-    for (const auto d : {Direction::ShortestWay, Direction::Positive, Direction::Negative, Direction::Current}) {
+    for (const auto d :
+         {Direction::ShortestWay, Direction::Positive, Direction::Negative, Direction::Current}) {
         EXPECT_NEAR(travel(10.0, 10.0, d), 0.0, 1e-9);
         EXPECT_NEAR(travel(10.0, 370.0, d), 0.0, 1e-9);  // folded: no extra turn
     }

@@ -43,7 +43,8 @@ TEST(AxisMove, EndsExactlyAtTheTarget) {
 }
 
 TEST(AxisMove, TakesTheStepsOfItsDurationRoundedUp) {
-    // 100 mm at 100 mm/s, 1000 mm/s², 10000 mm/s³: v/a + a/j + s/v = 0.1 + 0.1 + 1.0 s = 1200 cycles.
+    // 100 mm at 100 mm/s, 1000 mm/s², 10000 mm/s³: v/a + a/j + s/v = 0.1 + 0.1 + 1.0 s = 1200
+    // cycles.
     Rig rig{symmetric(1000.0, 10000.0)};
     rig.powerOn();
     rig.send(moveTo(100.0));

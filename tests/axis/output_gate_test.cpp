@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
-
 #include <takt/axis/output_gate.hpp>
 
 #include "axis_rig.hpp"
@@ -39,7 +38,9 @@ axis::AxisTraits traits() {
     return t;
 }
 
-core::Position at(double x) { return core::Position{x}; }
+core::Position at(double x) {
+    return core::Position{x};
+}
 
 }  // namespace
 

@@ -67,7 +67,8 @@ TEST_P(AxisFault, PowerLossLeavesNoJumpBehind) {
 }
 
 TEST_P(AxisFault, ToleratedFrameLossChangesNothing) {
-    // The motor of this drive stands while no target comes: three cycles at 400 mm/s are 1.2 mm of lag.
+    // The motor of this drive stands while no target comes: three cycles at 400 mm/s are 1.2 mm of
+    // lag.
     auto p = testParams();
     p.supervision.followingError = core::Distance{3.0};
     Moving rig{GetParam(), p};
