@@ -13,9 +13,10 @@ Possible result(const Point& point, bool mirrored) noexcept {
 /// From the beginning of the high block, or from a later point of it that cannot be left out.
 Possible fromHigh(const Problem& problem, const ExtremalCurve& up) noexcept {
     const double u = up.highBegin();
-    const double missing = problem.distance - up.at(u).distance;
-    if (std::fabs(missing) <= up.tolerance(u)) return result(up.point(u), false);
-    if (missing > 0.0) return result(up.crossingInHigh(u, problem.distance), false);
+    const Point met = up.meeting(u, problem.distance);
+    if (met.found) return result(met, false);
+    if (up.at(u).distance < problem.distance)
+        return result(up.crossingInHigh(u, problem.distance), false);
     const ExtremalCurve down{mirrored(problem)};
     return result(down.crossingInHigh(down.highBegin(), -problem.distance), true);
 }
@@ -41,9 +42,11 @@ Possible crossing(const Problem& problem, const ExtremalCurve& curve, bool isMir
 bool isDirect(const Problem& p, double& duration) noexcept {
     const double time = std::fabs(p.af - p.a0) / p.jerk;
     const double gain = 0.5 * (p.a0 + p.af) * time;
+    // A sampled velocity is as exact as the velocities of its profile, not as itself.
+    const double scale = std::min(p.vmax - p.vmin, (p.amax * p.amax + p.amin * p.amin) / p.jerk);
     const double slack =
-        8.0 * kEps *
-        (std::fabs(p.v0) + std::fabs(p.vf) + (std::fabs(p.a0) + std::fabs(p.af)) * time);
+        4.0 * kEps *
+        (scale + std::fabs(p.v0) + std::fabs(p.vf) + (std::fabs(p.a0) + std::fabs(p.af)) * time);
     if (!(std::fabs(p.vf - p.v0 - gain) <= slack)) return false;
     const double way = time * (p.v0 + time * (2.0 * p.a0 + p.af) * (1.0 / 6.0));
     duration = time;
@@ -57,9 +60,10 @@ Possible fastest(const Problem& problem) noexcept {
     if (isDirect(problem, direct)) return {direct, {}, false, true, true, true};
     const ExtremalCurve up{problem};
     const double u = up.begin();
-    const double missing = problem.distance - up.at(u).distance;
-    if (std::fabs(missing) <= up.tolerance(u)) return result(up.point(u), false);
-    if (missing > 0.0) return crossing(problem, up, false, u, problem.distance);
+    const Point met = up.meeting(u, problem.distance);
+    if (met.found) return result(met, false);
+    if (up.at(u).distance < problem.distance)
+        return crossing(problem, up, false, u, problem.distance);
     const ExtremalCurve down{mirrored(problem)};
     return crossing(problem, down, true, down.begin(), -problem.distance);
 }
