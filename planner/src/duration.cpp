@@ -36,6 +36,15 @@ Possible crossing(const Problem& problem, const ExtremalCurve& curve, bool isMir
     return result(curve.crossingInHigh(u, distance), isMirror);
 }
 
+/// The next crossing behind a point of the curve that is `missing` short of the distance.
+Possible later(const Problem& problem, const ExtremalCurve& curve, bool isMirror, const Point& from,
+               double missing) noexcept {
+    const double distance = isMirror ? -problem.distance : problem.distance;
+    if (from.cruise <= 0.0) return crossing(problem, curve, isMirror, from.u, distance);
+    const double more = missing / curve.topVelocity();
+    return result({from.u, from.cruise + more, from.duration + more, true}, isMirror);
+}
+
 /// The end of a profile is one piece of jerk. Both its duration and where it leads follow from the
 /// accelerations, so a state sampled there meets the target up to rounding only, and that must not
 /// count as a miss.
@@ -66,6 +75,21 @@ Possible fastest(const Problem& problem) noexcept {
         return crossing(problem, up, false, u, problem.distance);
     const ExtremalCurve down{mirrored(problem)};
     return crossing(problem, down, true, down.begin(), -problem.distance);
+}
+
+Possible firstPossible(const Problem& problem, double notBefore) noexcept {
+    const Possible least = fastest(problem);
+    if (notBefore <= least.duration) return least;
+    const ExtremalCurve up{problem};
+    const ExtremalCurve down{mirrored(problem)};
+    const Point high = up.lasting(notBefore);
+    const Point low = down.lasting(notBefore);
+    if (!high.found || !low.found) return fromHigh(problem, up);
+    const double beyond = problem.distance - up.distance(high);
+    const double below = -problem.distance - down.distance(low);
+    if (beyond > up.tolerance(high.u)) return later(problem, up, false, high, beyond);
+    if (below > down.tolerance(low.u)) return later(problem, down, true, low, below);
+    return {notBefore, {}, false, false, false, true};
 }
 
 void piecesOf(const Problem& problem, const Possible& possible, Pieces& out) noexcept {

@@ -41,6 +41,7 @@ public:
     [[nodiscard]] double lowEnd() const noexcept { return -star_; }
     [[nodiscard]] double highBegin() const noexcept { return high_; }
     [[nodiscard]] double top() const noexcept { return top_; }
+    [[nodiscard]] double topVelocity() const noexcept { return vtop_; }
 
     [[nodiscard]] Value at(double u) const noexcept;
     /// dp/dT
