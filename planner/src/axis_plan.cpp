@@ -10,7 +10,8 @@ namespace takt::planner::detail {
 
 namespace {
 
-Problem problemOf(const State& from, const State& to, const Limits& limits) noexcept {
+Problem problemOf(const State& from, const State& to, const Limits& limits,
+                  const Resolution& resolution) noexcept {
     const double p0 = from.position.count();
     const double pf = to.position.count();
     return {from.velocity.count(),
@@ -23,49 +24,80 @@ Problem problemOf(const State& from, const State& to, const Limits& limits) noex
             limits.maxAcceleration.count(),
             limits.minAcceleration.count(),
             limits.jerk.count(),
-            8.0 * kEps * (std::fabs(p0) + std::fabs(pf))};
+            8.0 * kEps * (std::fabs(p0) + std::fabs(pf)),
+            resolution.position.count(),
+            resolution.velocity.count()};
 }
 
 }  // namespace
 
-AxisPlan::AxisPlan(const State& from, const Target& target, const Limits& limits) noexcept
-    : from_{from}, target_{target}, whole_{problemOf(from, target.state, limits)}, inner_{whole_} {
-    if (std::isinf(whole_.jerk)) {
-        order_ = std::isinf(whole_.amax) && std::isinf(whole_.amin) ? Order::First : Order::Second;
-    }
-    begin();
-}
-
-void AxisPlan::begin() noexcept {
-    const bool toVelocity = target_.kind == TargetKind::Velocity;
-    Pieces unused;
-    if (order_ == Order::First) {
-        const double limit = whole_.distance > 0.0 ? whole_.vmax : whole_.vmin;
-        duration_ = toVelocity ? 0.0 : whole_.distance / limit;
-    } else if (order_ == Order::Second) {
-        if (!toVelocity) brakeSecondOrder(inner_, braking_);
-        duration_ = toVelocity ? secondVelocity(unused) : fastestSecondOrder(inner_, unused);
-    } else if (toVelocity) {
-        brakeAcceleration(inner_, braking_);
-        duration_ = fastestVelocity(inner_, unused);
+void AxisPlan::begin(const State& from, const Target& target, const Limits& limits,
+                     const Resolution& resolution) noexcept {
+    from_ = from;
+    target_ = target;
+    whole_ = problemOf(from, target.state, limits, resolution);
+    inner_ = whole_;
+    pieces_.size = 0;
+    brakingSize_ = 0;
+    brakingTime_ = 0.0;
+    if (std::isfinite(whole_.jerk)) {
+        order_ = Order::Third;
+        beginThirdOrder();
+    } else if (std::isfinite(whole_.amax) || std::isfinite(whole_.amin)) {
+        order_ = Order::Second;
+        beginSecondOrder();
     } else {
-        brakePosition(inner_, braking_);
-        fastest_ = detail::fastest(inner_);
-        duration_ = fastest_.found ? fastest_.duration : std::nan("");
+        order_ = Order::First;
+        beginFirstOrder();
     }
-    for (std::size_t i = 0; i < braking_.size; ++i) brakingTime_ += braking_.time[i];
     duration_ += brakingTime_;
 }
 
-double AxisPlan::secondVelocity(Pieces& out) const noexcept {
-    const double gain = whole_.vf - whole_.v0;
-    const double a = gain > 0.0 ? whole_.amax : whole_.amin;
-    out.add(gain / a, a);
-    return gain / a;
+void AxisPlan::endBraking() noexcept {
+    brakingSize_ = pieces_.size;
+    for (std::size_t i = 0; i < brakingSize_; ++i) brakingTime_ += pieces_.time[i];
+}
+
+void AxisPlan::beginFirstOrder() noexcept {
+    const double limit = whole_.distance > 0.0 ? whole_.vmax : whole_.vmin;
+    duration_ = target_.kind == TargetKind::Velocity ? 0.0 : whole_.distance / limit;
+}
+
+void AxisPlan::beginSecondOrder() noexcept {
+    if (target_.kind == TargetKind::Velocity) {
+        const double gain = whole_.vf - whole_.v0;
+        const double a = gain > 0.0 ? whole_.amax : whole_.amin;
+        duration_ = gain / a;
+        pieces_.add(duration_, a);
+        return;
+    }
+    brakeSecondOrder(inner_, pieces_);
+    endBraking();
+    duration_ = fastestSecondOrder(inner_, pieces_);
+}
+
+void AxisPlan::beginThirdOrder() noexcept {
+    if (target_.kind == TargetKind::Velocity) {
+        brakeAcceleration(inner_, pieces_);
+        endBraking();
+        duration_ = fastestVelocity(inner_, pieces_);
+        return;
+    }
+    brakePosition(inner_, pieces_);
+    endBraking();
+    fastest_ = detail::fastest(inner_);
+    duration_ = fastest_.found ? fastest_.duration : std::nan("");
+}
+
+Pieces AxisPlan::braking() const noexcept {
+    Pieces pieces;
+    for (std::size_t i = 0; i < brakingSize_; ++i) pieces.add(pieces_.time[i], pieces_.value[i]);
+    return pieces;
 }
 
 double AxisPlan::firstPossible(double notBefore) const noexcept {
     if (notBefore <= duration_) return duration_;
+    if (canWait(notBefore)) return notBefore;
     const double left = notBefore - brakingTime_;
     double least = left;
     if (target_.kind == TargetKind::Velocity) {
@@ -80,17 +112,9 @@ double AxisPlan::firstPossible(double notBefore) const noexcept {
 
 void AxisPlan::writeFastest(Profile& out) const noexcept {
     if (order_ == Order::First) return writeFirstOrder(duration_, out);
-    Pieces pieces = braking_;
-    const bool toVelocity = target_.kind == TargetKind::Velocity;
-    if (order_ == Order::Second) {
-        if (toVelocity) {
-            static_cast<void>(secondVelocity(pieces));
-        } else {
-            fastestSecondOrder(inner_, pieces);
-        }
-    } else if (toVelocity) {
-        fastestVelocity(inner_, pieces);
-    } else {
+    Pieces pieces;
+    pieces.add(pieces_);
+    if (order_ == Order::Third && target_.kind == TargetKind::State) {
         piecesOf(inner_, fastest_, pieces);
     }
     write(pieces, out);
@@ -117,11 +141,21 @@ bool AxisPlan::writeLasting(double duration, Profile& out) const noexcept {
         writeFirstOrder(duration, out);
         return true;
     }
-    Pieces pieces = braking_;
-    if (!lastingPieces(duration - brakingTime_, pieces)) return false;
+    Pieces pieces = braking();
+    if (!lastingPieces(duration - brakingTime_, pieces)) {
+        if (!canWait(duration)) return false;
+        piecesOf(inner_, fastest_, pieces);
+        pieces.add(duration - duration_, 0.0);
+    }
     write(pieces, out);
     ProfileBuilder::setDuration(duration, out);
     return true;
+}
+
+bool AxisPlan::canWait(double duration) const noexcept {
+    if (order_ != Order::Third || target_.kind != TargetKind::State) return false;
+    return fastest_.direct && whole_.af == 0.0 &&
+           std::fabs(whole_.vf) * duration <= whole_.nearDistance;
 }
 
 void AxisPlan::write(Pieces& pieces, Profile& out) const noexcept {

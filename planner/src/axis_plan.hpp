@@ -1,6 +1,6 @@
 #pragma once
 
-#include <takt/planner/profile.hpp>
+#include <takt/planner/trajectory.hpp>
 
 #include "duration.hpp"
 
@@ -10,9 +10,9 @@ namespace takt::planner::detail {
 /// Any later duration can be asked for afterwards.
 class AxisPlan {
 public:
-    AxisPlan() noexcept = default;
     /// \pre findFault() finds nothing
-    AxisPlan(const State& from, const Target& target, const Limits& limits) noexcept;
+    void begin(const State& from, const Target& target, const Limits& limits,
+               const Resolution& resolution) noexcept;
 
     /// The least possible duration. Not a number if there is no answer.
     [[nodiscard]] double duration() const noexcept { return duration_; }
@@ -29,8 +29,13 @@ public:
 private:
     enum class Order : std::uint8_t { First, Second, Third };
 
-    void begin() noexcept;
-    [[nodiscard]] double secondVelocity(Pieces& out) const noexcept;
+    /// As good as at the target: it can be there early.
+    [[nodiscard]] bool canWait(double duration) const noexcept;
+    void beginFirstOrder() noexcept;
+    void beginSecondOrder() noexcept;
+    void beginThirdOrder() noexcept;
+    void endBraking() noexcept;
+    [[nodiscard]] Pieces braking() const noexcept;
     [[nodiscard]] bool lastingPieces(double duration, Pieces& out) const noexcept;
     void write(Pieces& pieces, Profile& out) const noexcept;
     void writeFirstOrder(double duration, Profile& out) const noexcept;
@@ -40,7 +45,9 @@ private:
     Order order_{Order::Third};
     Problem whole_{};
     Problem inner_{};  ///< after the braking
-    Pieces braking_;
+    /// The braking, and behind it the fastest profile where that was found with it.
+    Pieces pieces_;
+    std::size_t brakingSize_{0};
     double brakingTime_{0.0};
     Possible fastest_{};
     double duration_{0.0};

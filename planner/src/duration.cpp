@@ -53,13 +53,14 @@ bool isDirect(const Problem& p, double& duration) noexcept {
     const double gain = 0.5 * (p.a0 + p.af) * time;
     // A sampled velocity is as exact as the velocities of its profile, not as itself.
     const double scale = std::min(p.vmax - p.vmin, (p.amax * p.amax + p.amin * p.amin) / p.jerk);
-    const double slack =
+    const double rounding =
         4.0 * kEps *
         (scale + std::fabs(p.v0) + std::fabs(p.vf) + (std::fabs(p.a0) + std::fabs(p.af)) * time);
+    const double slack = std::max(rounding, p.nearVelocity);
     if (!(std::fabs(p.vf - p.v0 - gain) <= slack)) return false;
     const double way = time * (p.v0 + time * (2.0 * p.a0 + p.af) * (1.0 / 6.0));
     duration = time;
-    return std::fabs(p.distance - way) <= p.tolerance + slack * time;
+    return std::fabs(p.distance - way) <= std::max(p.tolerance + rounding * time, p.nearDistance);
 }
 
 }  // namespace

@@ -7,7 +7,8 @@ namespace takt::planner {
 core::Result<Profile, PlanError> plan(const State& from, const Target& target,
                                       const Limits& limits) noexcept {
     if (const auto fault = findFault(from, target, limits)) return fault->error;
-    const detail::AxisPlan axis{from, target, limits};
+    detail::AxisPlan axis;
+    axis.begin(from, target, limits, {});
     if (!(axis.duration() >= 0.0)) return PlanError::NoSolution;
     Profile profile;
     axis.writeFastest(profile);

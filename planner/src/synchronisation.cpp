@@ -178,10 +178,12 @@ std::optional<Line> findLine(std::span<const AxisRequest> requests) noexcept {
     return line;
 }
 
-std::optional<double> writeLine(const Group& group, const Line& line, double atMost,
+std::optional<double> writeLine(Group& group, const Line& line, double atMost,
                                 std::span<Profile> out) noexcept {
     if (findFault(line.request.from, line.request.target, line.request.limits)) return std::nullopt;
-    const AxisPlan plan{line.request.from, line.request.target, line.request.limits};
+    AxisPlan& plan = group.line;
+    plan.begin(line.request.from, line.request.target, line.request.limits,
+               line.request.resolution);
     if (!(plan.duration() >= 0.0)) return std::nullopt;
     double least = group.minDuration;
     for (std::size_t i = 0; i < group.requests.size(); ++i) {

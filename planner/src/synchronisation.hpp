@@ -13,8 +13,9 @@ namespace takt::planner::detail {
 struct Group {
     std::span<const AxisRequest> requests;
     std::array<AxisPlan, Trajectory::MaxAxes> plans;
-    double cycle;
-    double minDuration;
+    double cycle{0.0};
+    double minDuration{0.0};
+    AxisPlan line;
 };
 
 /// Every axis for itself. \return the longest duration
@@ -34,7 +35,7 @@ struct Line {
 [[nodiscard]] std::optional<Line> findLine(std::span<const AxisRequest> requests) noexcept;
 
 /// \return the duration, or nothing if it is not possible within `atMost`
-std::optional<double> writeLine(const Group& group, const Line& line, double atMost,
+std::optional<double> writeLine(Group& group, const Line& line, double atMost,
                                 std::span<Profile> out) noexcept;
 
 }  // namespace takt::planner::detail

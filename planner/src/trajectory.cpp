@@ -34,9 +34,14 @@ std::optional<InputFault> checkAll(std::span<const AxisRequest> requests,
 
 }  // namespace
 
-Trajectory::Trajectory(std::size_t axes) : current_(axes), next_(axes) {
+Trajectory::Trajectory(std::size_t axes)
+    : current_(axes), next_(axes), work_{std::make_unique<detail::Group>()} {
     assert(axes >= 1 && axes <= MaxAxes);
 }
+
+Trajectory::~Trajectory() = default;
+Trajectory::Trajectory(Trajectory&&) noexcept = default;
+Trajectory& Trajectory::operator=(Trajectory&&) noexcept = default;
 
 core::Result<Seconds, InputFault> Trajectory::plan(std::span<const AxisRequest> requests,
                                                    const Timing& timing) noexcept {
@@ -44,10 +49,14 @@ core::Result<Seconds, InputFault> Trajectory::plan(std::span<const AxisRequest> 
         return InputFault{PlanError::InvalidLimits, InputField::Axes, 0};
     }
     if (const auto fault = checkAll(requests, timing)) return *fault;
-    detail::Group group{requests, {}, timing.cycle.count(), timing.minDuration.count()};
+    detail::Group& group = *work_;
+    group.requests = requests;
+    group.cycle = timing.cycle.count();
+    group.minDuration = timing.minDuration.count();
     for (std::size_t i = 0; i < requests.size(); ++i) {
         if (!requests[i].enabled) continue;
-        group.plans[i] = detail::AxisPlan{requests[i].from, requests[i].target, requests[i].limits};
+        group.plans[i].begin(requests[i].from, requests[i].target, requests[i].limits,
+                             requests[i].resolution);
         if (!(group.plans[i].duration() >= 0.0)) {
             return InputFault{PlanError::NoSolution, InputField::None,
                               static_cast<std::uint8_t>(i)};

@@ -21,6 +21,10 @@ struct Handle {
     std::array<planner::State, planner::Trajectory::MaxAxes> states{};
 };
 
+/// Answers of this interface are judged to 1e-8 of SI units, and a generator that is that coarse
+/// inside calls anything nearer "arrived". Asking for a nanometre keeps durations comparable.
+constexpr double kResolution = 1e-9;
+
 planner::Limits limitsOf(const otg_problem& q, std::size_t i) {
     const double inf = std::numeric_limits<double>::infinity();
     const bool toVelocity = (q.flags & OTG_VELOCITY) != 0;
@@ -40,6 +44,7 @@ void fill(const otg_problem& q, std::span<planner::AxisRequest> requests) {
         requests[i].target = {
             kind, {core::Position{pf}, core::Velocity{q.vf[i]}, core::Acceleration{q.af[i]}}};
         requests[i].limits = limitsOf(q, i);
+        requests[i].resolution = {core::Distance{kResolution}, core::Velocity{kResolution}};
     }
 }
 

@@ -2,11 +2,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <takt/planner/profile.hpp>
 #include <vector>
 
 namespace takt::planner {
+
+namespace detail {
+struct Group;
+}
 
 enum class Synchronisation : std::uint8_t {
     None,             ///< each axis as fast as it can
@@ -16,12 +21,21 @@ enum class Synchronisation : std::uint8_t {
     Line,  ///< together, and on a straight line wherever there is one, even if it takes longer
 };
 
+/// How near to a State target counts as there already. Zero: the numbers are taken as they are, but
+/// for their rounding. One encoder count, say, saves a motion of a few microseconds for what nobody
+/// can see.
+struct Resolution {
+    core::Distance position{};
+    core::Velocity velocity{};
+};
+
 /// What one axis is to do. An axis that is not enabled stays where it starts.
 struct AxisRequest {
     State from;
     Target target;
     Limits limits;
     bool enabled{true};
+    Resolution resolution{};
 };
 
 struct Timing {
@@ -41,6 +55,9 @@ public:
 
     /// \pre 1 <= axes <= MaxAxes
     explicit Trajectory(std::size_t axes);
+    ~Trajectory();
+    Trajectory(Trajectory&&) noexcept;
+    Trajectory& operator=(Trajectory&&) noexcept;
 
     /// rt. Plans the fastest motion of all axes. A refused request leaves the trajectory as it was.
     /// \pre requests.size() == size()
@@ -62,6 +79,7 @@ public:
 private:
     std::vector<Profile> current_;
     std::vector<Profile> next_;
+    std::unique_ptr<detail::Group> work_;
     core::Seconds duration_{};
     bool straight_{false};
 };
