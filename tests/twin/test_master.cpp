@@ -72,6 +72,7 @@ std::pair<std::uint16_t, std::uint16_t> TestMaster::requestState(std::size_t dev
     write(device, 0x0120, le16(control));
     const auto end = twin_.clock().now() + patience;
     Reply status;
+    sleep(milliseconds{4});  // an error of before is still shown until the device has looked
     do {
         sleep(microseconds{500});
         status = read(device, 0x0130, 6);
@@ -217,6 +218,7 @@ void TestMaster::startSync0(core::Duration cycleTime, core::Duration shift) {
 
 void TestMaster::cycle() {
     if (!nextBeat_) nextBeat_ = twin_.clock().now() + beat_;
+    while (*nextBeat_ < twin_.clock().now()) *nextBeat_ += beat_;
     twin_.clock().sleepUntil(*nextBeat_);
     *nextBeat_ += beat_;
     wire::FrameWriter writer{frame_};
