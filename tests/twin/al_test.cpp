@@ -45,7 +45,9 @@ TEST_F(TwinAlState, RefusesUnknownStatesAndBoot) {
     EXPECT_EQ(master.requestState(0, 3), (Status{0x11, 0x0013}));
 }
 
-TEST_F(TwinAlState, AnswersTheOwnStateAsSuccess) { EXPECT_EQ(master.requestState(0, 1), (Status{1, 0})); }
+TEST_F(TwinAlState, AnswersTheOwnStateAsSuccess) {
+    EXPECT_EQ(master.requestState(0, 1), (Status{1, 0}));
+}
 
 TEST_F(TwinAlState, TakesItsTime) {
     master.setMailboxes(0);

@@ -30,28 +30,33 @@ protected:
 
     void SetUp() override { master.toPreOp(); }
     std::uint32_t map(std::uint16_t index, std::uint8_t sub, std::uint32_t value) {
-        return master.download(0, index, sub, sub == 0 ? Bytes{static_cast<std::uint8_t>(value)} : le32(value));
+        return master.download(0, index, sub,
+                               sub == 0 ? Bytes{static_cast<std::uint8_t>(value)} : le32(value));
     }
 };
 using TwinCoe = Fixture<'c'>;
 using TwinCoeRa = Fixture<'r'>;
 
 Bytes request(std::uint8_t counter, std::uint8_t type, const Bytes& body) {
-    Bytes message = le16(static_cast<std::uint32_t>(body.size()));
-    message.insert(message.end(), {0x34, 0x12, 0, static_cast<std::uint8_t>(type | (counter << 4))});
-    message.insert(message.end(), body.begin(), body.end());
+    const auto last = static_cast<std::uint8_t>(type | (counter << 4));
+    Bytes message{static_cast<std::uint8_t>(body.size()), 0, 0x34, 0x12, 0, last};
+    message.resize(6 + body.size());
+    std::copy(body.begin(), body.end(), message.begin() + 6);
     return message;
 }
 
 TEST_F(TwinCoe, AnswersAnExpeditedUploadByteForByte) {
-    const Bytes answer = master.mailbox(0, request(1, 3, {0x00, 0x20, 0x40, 0x65, 0x60, 0, 0, 0, 0, 0}));
-    const Bytes expected{10, 0, 0x34, 0x12, 0, 0x13, 0x00, 0x30, 0x43, 0x65, 0x60, 0x00, 0x50, 0xC3, 0, 0};
+    const Bytes answer =
+        master.mailbox(0, request(1, 3, {0x00, 0x20, 0x40, 0x65, 0x60, 0, 0, 0, 0, 0}));
+    const Bytes expected{10,   0,    0x34, 0x12, 0,    0x13, 0x00, 0x30,
+                         0x43, 0x65, 0x60, 0x00, 0x50, 0xC3, 0,    0};
     ASSERT_GE(answer.size(), expected.size());
     EXPECT_EQ(Bytes(answer.begin(), answer.begin() + 16), expected);
 }
 
 TEST_F(TwinCoe, AnswersAnAbortByteForByte) {
-    const Bytes answer = master.mailbox(0, request(1, 3, {0x00, 0x20, 0x40, 0x34, 0x12, 5, 0, 0, 0, 0}));
+    const Bytes answer =
+        master.mailbox(0, request(1, 3, {0x00, 0x20, 0x40, 0x34, 0x12, 5, 0, 0, 0, 0}));
     const Bytes expected{10, 0, 0x34, 0x12, 0, 0x13, 0x00, 0x30, 0x80, 0x34, 0x12, 5, 0, 0, 2, 6};
     ASSERT_GE(answer.size(), expected.size());
     EXPECT_EQ(Bytes(answer.begin(), answer.begin() + 16), expected);
@@ -66,7 +71,8 @@ TEST_F(TwinCoe, ShowsTheIdentityOfTheSii) {
 
 TEST_F(TwinCoe, UploadsWhatIsLongerThanFourBytesInOnePiece) {
     const SdoReply reply = master.upload(0, 0x1008, 0);
-    EXPECT_EQ(std::string(reply.data.begin(), reply.data.end()), "A drive with a name longer than four bytes");
+    EXPECT_EQ(std::string(reply.data.begin(), reply.data.end()),
+              "A drive with a name longer than four bytes");
 }
 
 TEST_F(TwinCoe, WritesAndReadsBack) {
@@ -83,7 +89,8 @@ TEST_F(TwinCoe, RefusesWhatDoesNotExistOrMayNotBeWritten) {
 }
 
 TEST_F(TwinCoe, RefusesCompleteAccess) {
-    const Bytes answer = master.mailbox(0, request(1, 3, {0x00, 0x20, 0x50, 0x18, 0x10, 0, 0, 0, 0, 0}));
+    const Bytes answer =
+        master.mailbox(0, request(1, 3, {0x00, 0x20, 0x50, 0x18, 0x10, 0, 0, 0, 0, 0}));
     EXPECT_EQ(number(std::span{answer}.subspan(12, 4)), NoCompleteAccess);
 }
 
@@ -103,7 +110,8 @@ TEST_F(TwinCoe, NeverDropsRequestsWithoutCounter) {
 
 TEST_F(TwinCoe, CountsItsOwnMessagesFromOneToSeven) {
     for (const unsigned expected : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 1U}) {
-        const Bytes answer = master.mailbox(0, request(0, 3, {0x00, 0x20, 0x40, 0x65, 0x60, 0, 0, 0, 0, 0}));
+        const Bytes answer =
+            master.mailbox(0, request(0, 3, {0x00, 0x20, 0x40, 0x65, 0x60, 0, 0, 0, 0, 0}));
         EXPECT_EQ(answer[5] >> 4, expected);
     }
 }
@@ -115,16 +123,17 @@ TEST_F(TwinCoe, AnswersForeignProtocolsAndBrokenMessagesWithAMailboxError) {
         EXPECT_EQ(number(std::span{answer}.subspan(6, 2)), 1U);
         return number(std::span{answer}.subspan(8, 2));
     };
-    EXPECT_EQ(detail(request(1, 4, Bytes(10, 0))), 2U);               // FoE
-    EXPECT_EQ(detail(request(2, 3, {0x00, 0x20, 0x40})), 6U);         // too short
-    EXPECT_EQ(detail(request(3, 3, {0x00, 0x80, 1, 0, 0, 0})), 4U);   // SDO information
+    EXPECT_EQ(detail(request(1, 4, Bytes(10, 0))), 2U);              // FoE
+    EXPECT_EQ(detail(request(2, 3, {0x00, 0x20, 0x40})), 6U);        // too short
+    EXPECT_EQ(detail(request(3, 3, {0x00, 0x80, 1, 0, 0, 0})), 4U);  // SDO information
     Bytes tooLong = request(4, 3, Bytes(10, 0));
     tooLong[0] = 200;
     EXPECT_EQ(detail(tooLong), 8U);
 }
 
 TEST_F(TwinCoe, PutsTheLastAnswerBackWhenAskedToRepeat) {
-    const Bytes answer = master.mailbox(0, request(1, 3, {0x00, 0x20, 0x40, 0x65, 0x60, 0, 0, 0, 0, 0}));
+    const Bytes answer =
+        master.mailbox(0, request(1, 3, {0x00, 0x20, 0x40, 0x65, 0x60, 0, 0, 0, 0, 0}));
     EXPECT_EQ(master.read(0, 0x1080, 128).wkc, 0);
     master.write(0, 0x080E, {0x03});
     EXPECT_EQ(master.read(0, 0x080F, 1).data[0] & 0x02, 0x02);
@@ -134,7 +143,8 @@ TEST_F(TwinCoe, PutsTheLastAnswerBackWhenAskedToRepeat) {
 TEST_F(TwinCoe, WritesAndReadsInSegments) {
     // A normal upload whose answer does not fit is not possible with 128 bytes here; download a
     // number by segments of the smallest size.
-    const Bytes start = master.mailbox(0, request(1, 3, {0x00, 0x20, 0x21, 0x65, 0x60, 0, 4, 0, 0, 0}));
+    const Bytes start =
+        master.mailbox(0, request(1, 3, {0x00, 0x20, 0x21, 0x65, 0x60, 0, 4, 0, 0, 0}));
     ASSERT_EQ(start[8], 0x60);
     const Bytes wrong = master.mailbox(0, request(2, 3, {0x00, 0x20, 0x17, 1, 2, 3, 4, 0, 0, 0}));
     EXPECT_EQ(number(std::span{wrong}.subspan(12, 4)), 0x05030000U);  // toggle

@@ -37,7 +37,8 @@ Bytes padded(Bytes frame) {
     return frame;
 }
 
-const Bytes Header{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00, 0x10, 0x54, 0x41, 0x4B, 0x54, 0x88, 0xA4};
+const Bytes Header{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00,
+                   0x10, 0x54, 0x41, 0x4B, 0x54, 0x88, 0xA4};
 
 Bytes frameOf(const Bytes& datagrams) {
     Bytes frame = Header;
@@ -55,22 +56,28 @@ Bytes marked(const Bytes& datagrams) {
 }
 
 TEST_F(TwinSegment, AnswersABroadcastReadByteForByte) {
-    const Bytes sent = frameOf({0x07, 0x11, 0x00, 0x00, 0x30, 0x01, 0x02, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00});
+    const Bytes sent = frameOf(
+        {0x07, 0x11, 0x00, 0x00, 0x30, 0x01, 0x02, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00});
     // Position counted to 3, AL status INIT ORed in, working counter 3.
-    const Bytes back = marked({0x07, 0x11, 0x03, 0x00, 0x30, 0x01, 0x02, 0x00, 0x00, 0x00, 0x01, 0x00, 0x03, 0x00});
+    const Bytes back = marked(
+        {0x07, 0x11, 0x03, 0x00, 0x30, 0x01, 0x02, 0x00, 0x00, 0x00, 0x01, 0x00, 0x03, 0x00});
     EXPECT_EQ(raw(sent), back);
 }
 
 TEST_F(TwinSegment, AnswersAPositionReadOnlyAtItsPlaceByteForByte) {
-    // Second device: 0xFFFF counts to 2 over three controllers; FMMUs 3, SyncManagers 4, 8 KiB, two MII ports.
-    const Bytes sent = frameOf({0x01, 0x01, 0xFF, 0xFF, 0x04, 0x00, 0x04, 0x00, 0x00, 0x00, 0, 0, 0, 0, 0x00, 0x00});
-    const Bytes back = marked({0x01, 0x01, 0x02, 0x00, 0x04, 0x00, 0x04, 0x00, 0x00, 0x00, 3, 4, 8, 0x0F, 0x01, 0x00});
+    // Second device: 0xFFFF counts to 2 over three controllers; FMMUs 3, SyncManagers 4, 8 KiB, two
+    // MII ports.
+    const Bytes sent = frameOf(
+        {0x01, 0x01, 0xFF, 0xFF, 0x04, 0x00, 0x04, 0x00, 0x00, 0x00, 0, 0, 0, 0, 0x00, 0x00});
+    const Bytes back = marked(
+        {0x01, 0x01, 0x02, 0x00, 0x04, 0x00, 0x04, 0x00, 0x00, 0x00, 3, 4, 8, 0x0F, 0x01, 0x00});
     EXPECT_EQ(raw(sent), back);
 }
 
 TEST_F(TwinSegment, PassesUnknownAndIdleCommandsUnchanged) {
     for (const std::uint8_t command : {std::uint8_t{0}, std::uint8_t{15}, std::uint8_t{0xFF}}) {
-        const Bytes datagram{command, 0x01, 0x05, 0x00, 0x30, 0x01, 0x02, 0x00, 0x00, 0x00, 0xAB, 0xCD, 0x07, 0x00};
+        const Bytes datagram{command, 0x01, 0x05, 0x00, 0x30, 0x01, 0x02,
+                             0x00,    0x00, 0x00, 0xAB, 0xCD, 0x07, 0x00};
         EXPECT_EQ(raw(frameOf(datagram)), marked(datagram)) << int{command};
     }
 }
@@ -97,13 +104,13 @@ struct CounterRule {
 TEST_F(TwinSegment, CountsEveryCommandAsTheStandardSays) {
     master.addressAll();
     const CounterRule rules[] = {
-        {Command::Aprd, 0xFFFF, 1, 2},      {Command::Apwr, 0xFFFF, 1, 2},
-        {Command::Aprw, 0xFFFF, 3, 2},      {Command::Aprd, 0xFFFD, 0, 0},
-        {Command::Fprd, 1002, 1, 1002},     {Command::Fpwr, 1002, 1, 1002},
-        {Command::Fprw, 1002, 3, 1002},     {Command::Fprd, 999, 0, 999},
-        {Command::Brd, 0, 3, 3},            {Command::Bwr, 0, 3, 3},
-        {Command::Brw, 0, 9, 3},            {Command::Armw, 0, 3, 3},
-        {Command::Frmw, 1001, 3, 1001},     {Command::Frmw, 999, 3, 999},
+        {Command::Aprd, 0xFFFF, 1, 2},  {Command::Apwr, 0xFFFF, 1, 2},
+        {Command::Aprw, 0xFFFF, 3, 2},  {Command::Aprd, 0xFFFD, 0, 0},
+        {Command::Fprd, 1002, 1, 1002}, {Command::Fpwr, 1002, 1, 1002},
+        {Command::Fprw, 1002, 3, 1002}, {Command::Fprd, 999, 0, 999},
+        {Command::Brd, 0, 3, 3},        {Command::Bwr, 0, 3, 3},
+        {Command::Brw, 0, 9, 3},        {Command::Armw, 0, 3, 3},
+        {Command::Frmw, 1001, 3, 1001}, {Command::Frmw, 999, 3, 999},
     };
     for (const CounterRule& rule : rules) {
         const Reply reply = master.send(rule.command, rule.adp, 0x0F80, Bytes(4, 0));
@@ -129,7 +136,8 @@ TEST_F(TwinSegment, ReadsFromOneAndWritesToTheOthersInMultipleWrites) {
 
 TEST_F(TwinSegment, OrsBroadcastReads) {
     master.addressAll();
-    for (std::size_t i = 0; i < 3; ++i) master.write(i, 0x0F80, {static_cast<std::uint8_t>(1 << i)});
+    for (std::size_t i = 0; i < 3; ++i)
+        master.write(i, 0x0F80, {static_cast<std::uint8_t>(1 << i)});
     EXPECT_EQ(master.send(Command::Brd, 0, 0x0F80, {0x40}).data, Bytes{0x47});
 }
 

@@ -1,10 +1,9 @@
-#include "sii_image.hpp"
-
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "devices.hpp"
+#include "sii_image.hpp"
 #include "test_master.hpp"
 
 namespace takt::twin::test {
