@@ -113,7 +113,8 @@ void Axis::react(Reaction reaction) noexcept {
 }
 
 void Axis::updatePower() noexcept {
-    if (view_.state != AxisState::Disabled || !view_.powerRequested || !drive_.enabled()) return;
+    if (view_.state != AxisState::Disabled || !view_.powerRequested) return;
+    if (!drive_.enabled() || !drive_.inputs().fresh || !drive_.health().operational) return;
     enterStandstill();
     view_.commandedPosition = motion_.set().position;
 }

@@ -36,19 +36,20 @@ void Motion::hold(Position position) noexcept {
 }
 
 ErrorId Motion::begin(const Command& command) noexcept {
+    const Dynamics dynamics = holdingVelocity(command.dynamics);
     switch (command.kind) {
         case CommandKind::MoveAbsolute: {
             const bool modulo = traits_->period > Distance{};
-            return beginPosition(modulo ? moduloTarget(command) : command.position,
-                                 command.dynamics);
+            return beginPosition(modulo ? moduloTarget(command, dynamics) : command.position,
+                                 dynamics);
         }
         case CommandKind::MoveRelative:
-            return beginPosition(set_.position + command.distance, command.dynamics);
+            return beginPosition(set_.position + command.distance, dynamics);
         case CommandKind::MoveVelocity:
-            return beginVelocity(command.dynamics);
+            return beginVelocity(dynamics);
         case CommandKind::Halt:
         case CommandKind::Stop:
-            return beginBraking(command.dynamics);
+            return beginBraking(dynamics);
         case CommandKind::PowerOn:
         case CommandKind::PowerOff:
         case CommandKind::Reset:
@@ -59,10 +60,27 @@ ErrorId Motion::begin(const Command& command) noexcept {
     return ErrorId::InvalidParameter;
 }
 
+/// Taking the present acceleration back with a gentle jerk gains velocity (a²/2j). Where that would
+/// pass the axis' limit, the jerk is raised: the motion so far kept the limit, so its own jerk is
+/// enough.
+Dynamics Motion::holdingVelocity(const Dynamics& dynamics) const noexcept {
+    Dynamics d = dynamics;
+    const double a = set_.acceleration.count();
+    if (a == 0.0) return d;
+    const double limit = traits_->limits.velocity.count();
+    const double v = set_.velocity.count();
+    const double room = a > 0.0 ? limit - v : limit + v;
+    const double hardest = std::max(traits_->limits.jerk, traits_->limits.stopJerk).count();
+    const double needed = room > 0.0 ? std::min(a * a / (2.0 * room), hardest) : hardest;
+    d.jerk = std::max(d.jerk, core::Jerk{needed});
+    return d;
+}
+
 bool Motion::beginStop() noexcept {
     const LimitParams& l = traits_->limits;
-    const auto profile = planner::planStop(
-        set_, braking({l.velocity, l.stopDeceleration, l.stopDeceleration, l.stopJerk}));
+    const Dynamics d =
+        holdingVelocity({l.velocity, l.stopDeceleration, l.stopDeceleration, l.stopJerk});
+    const auto profile = planner::planStop(set_, braking(d));
     if (!profile.ok()) return false;
     run(profile.value());
     return true;
@@ -236,7 +254,7 @@ planner::Limits Motion::moving(const Dynamics& d, bool forward, bool turns) cons
     return {d.velocity, -d.velocity, up, -down, d.jerk};
 }
 
-Position Motion::moduloTarget(const Command& command) noexcept {
+Position Motion::moduloTarget(const Command& command, const Dynamics& dynamics) noexcept {
     const double period = traits_->period.count();
     const double from = set_.position.count();
     // Way forward in [0, period); less than half a count either way is "there already".
@@ -256,7 +274,7 @@ Position Motion::moduloTarget(const Command& command) noexcept {
     double travel = up ? forward : backward;
     if (underWay()) {
         // Not to be stopped in time: as many more turns as braking takes.
-        const auto stop = stopFrom(set_, command.dynamics);
+        const auto stop = stopFrom(set_, dynamics);
         const double braking = stop ? (*stop - set_.position).count() : 0.0;
         const double missing = up ? braking - travel : travel - braking;
         if (missing > 0.0) travel += (up ? period : -period) * std::ceil(missing / period);

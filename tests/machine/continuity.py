@@ -5,7 +5,7 @@ usage: continuity.py TRACE.csv --machine MACHINE.xml [--limits "X velocity=600 j
        continuity.py --selftest --machine MACHINE.xml      on a made-up trace of the first axis
 
 For every axis of the trace, in every stretch of cycles in which the drive is in Operation enabled and
-the axis neither Disabled nor Homing:
+in CSP, and the axis neither Disabled nor Homing:
 - first, second and third differences of X.set over T, T^2, T^3 are within velocity, the largest of
   acceleration, deceleration and stopDeceleration, and the larger of jerk and stopJerk; allowed on top:
   1e-6 of the limit and 4 ulp of the position over T^n. The axis is at rest where a stretch begins.
@@ -28,7 +28,7 @@ import machine_file
 
 RELATIVE = 1e-6
 ULPS = 4
-OPERATION_ENABLED, STATE_MASK = 0x0027, 0x006F
+OPERATION_ENABLED, STATE_MASK, CSP = 0x0027, 0x006F, 8
 RESTING_STATES = ("Disabled", "Homing")
 NUMBERS = ("set", "setVel", "setAcc", "target", "actual", "actualVel", "lag")
 MAX_SHOWN = 40
@@ -59,7 +59,7 @@ def read_trace(path):
         values = list(values)
         if quantity in NUMBERS:
             values = [float(v) for v in values]
-        elif quantity == "statusword":
+        elif quantity in ("statusword", "mode"):
             values = [int(v) for v in values]
         axes.setdefault(axis, {})[quantity] = values
     return Trace([int(v) for v in columns[0]], axes)
@@ -79,8 +79,9 @@ RULES = ("velocity", "acceleration", "jerk")
 def stretches(axis):
     """(first row, row behind the last) of each stretch in which the axis owns the motion."""
     begin = None
-    for row, (state, word) in enumerate(zip(axis["state"], axis["statusword"])):
-        active = word & STATE_MASK == OPERATION_ENABLED and state not in RESTING_STATES
+    for row, (state, word, mode) in enumerate(zip(axis["state"], axis["statusword"], axis["mode"])):
+        active = (word & STATE_MASK == OPERATION_ENABLED and mode == CSP and
+                  state not in RESTING_STATES)
         if active and begin is None:
             begin = row
         if not active and begin is not None:
@@ -332,6 +333,7 @@ def made_up_trace(machine):
     columns = {"set": sets, "actual": list(sets), "target": [float(round(s * factor)) for s in sets],
                "state": ["DiscreteMotion" if i in running else "Disabled" for i in range(len(sets))],
                "statusword": [0x1637 if i in running else 0x0650 for i in range(len(sets))]}
+    columns["mode"] = [CSP] * len(sets)
     for other in ("setVel", "setAcc", "actualVel", "lag"):
         columns[other] = [0.0] * len(sets)
     return Trace(list(range(1, len(sets) + 1)), {name: columns})

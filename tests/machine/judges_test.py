@@ -31,6 +31,15 @@ class ReadingTheMachineFile(unittest.TestCase):
             with self.assertRaises(machine_file.MachineError, msg=text):
                 machine_file.number(text)
 
+    def test_units_of_motion_become_those_of_the_axis(self):
+        for text, value in (("500 mm/s", 500), ("0.5 m/s", 500), ("3 m/min", 50), ("2 m/s^2", 2000),
+                            ("2 m/s\u00b2", 2000), ("60 rpm", 360), ("1 mm/s^3", 1), ("90 \u00b0/s", 90),
+                            ("360 deg", 360), ("250 um", fractions.Fraction(1, 4))):
+            self.assertEqual(machine_file.motion(text), value, text)
+        for text in ("5", "5 s", "5 kg/s", "5 mm/h", "5 mm/s^4"):
+            with self.assertRaises(machine_file.MachineError, msg=text):
+                machine_file.motion(text)
+
     def test_scaling_and_limits_of_an_axis(self):
         axis = machine_file.Machine(MACHINE).axis("X")
         self.assertEqual(axis.counts_per_unit, 500)
@@ -54,7 +63,8 @@ class JudgingATrace(unittest.TestCase):
 
     def test_a_csv_file_is_read_as_it_was_written(self):
         columns = self.trace.axes["X"]
-        order = ["state", "set", "setVel", "setAcc", "target", "actual", "actualVel", "lag", "statusword"]
+        order = ["state", "set", "setVel", "setAcc", "target", "actual", "actualVel", "lag", "statusword",
+                 "mode"]
         with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
             file.write("cycle,t_ns," + ",".join(f"X.{c}" for c in order) + "\n")
             for i, cycle in enumerate(self.trace.cycles):

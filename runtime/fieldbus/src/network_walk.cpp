@@ -163,7 +163,7 @@ bool NetworkWalk::clocksQuiet() noexcept {
     for (std::size_t i = 0; i < agents_.size(); ++i) {
         if (!network_.slaves[i].dc.enabled || i == reference_) continue;
         const auto& difference = agents_[i]->difference();
-        complete = complete && difference.has_value();
+        complete = complete && !agents_[i]->differencePending();
         below = below && (!difference || *difference < network_.dcLimit);
     }
     if (!complete) return false;

@@ -61,7 +61,6 @@ void SlaveAgent::wantStatus() noexcept {
 
 void SlaveAgent::wantDifference() noexcept {
     differenceWanted_ = true;
-    difference_.reset();
     wake();
 }
 

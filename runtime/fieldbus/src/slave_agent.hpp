@@ -71,10 +71,11 @@ public:
     /// The slave answered the last time it was asked for its AL status.
     [[nodiscard]] bool answers() const noexcept { return answers_; }
     [[nodiscard]] bool statusPending() const noexcept { return statusWanted_; }
-    /// Magnitude of 0x092C as last read; empty: not read since reset or while a read is pending.
+    /// Magnitude of 0x092C as last read; empty: not read since reset.
     [[nodiscard]] const std::optional<core::Duration>& difference() const noexcept {
         return difference_;
     }
+    [[nodiscard]] bool differencePending() const noexcept { return differenceWanted_; }
     [[nodiscard]] std::uint16_t station() const noexcept { return station_; }
     [[nodiscard]] const EmergencyRecord& lastEmergency() const noexcept;
     [[nodiscard]] std::uint32_t emergencies() const noexcept;
