@@ -11,21 +11,22 @@ using testing::HasSubstr;
 const std::string Source = TAKT_SOURCE_DIR;
 const std::string Machine = Source + "/samples/03_gantry/machine.xml";
 
-/// One run of the sample with all outputs on, shared by the rules below.
+/// One run of the sample with all outputs on, in a folder of its own for each rule: they run side by side.
 class GantryRun : public testing::Test {
 protected:
-    static void SetUpTestSuite() {
-        folder = freshFolder("gantry");
+    void SetUp() override {
+        folder = freshFolder(std::string{"gantry_"} +
+                             testing::UnitTest::GetInstance()->current_test_info()->name());
         result = runTakt({"run", Machine, "--fast", "--trace", "a.csv", "--plot", "a.svg", "--pcap", "a.pcapng"},
                          folder);
     }
-    static ProcessResult python(const std::vector<std::string>& arguments) {
+    [[nodiscard]] ProcessResult python(const std::vector<std::string>& arguments) const {
         std::vector<std::string> command{"python3"};
         command.insert(command.end(), arguments.begin(), arguments.end());
         return runCommand(command, folder);
     }
-    static inline std::string folder;
-    static inline ProcessResult result;
+    std::string folder;
+    ProcessResult result;
 };
 
 TEST_F(GantryRun, EndsWellWithoutLosingAFrame) {
