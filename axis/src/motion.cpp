@@ -17,6 +17,12 @@ namespace {
 /// A duration this little (relative to a cycle) above a whole number of cycles is rounding.
 constexpr double kStepTolerance = 1e-9;
 
+Dynamics gentler(const Dynamics& dynamics) noexcept {
+    Dynamics d = dynamics;
+    d.acceleration = d.deceleration = std::min(d.acceleration, d.deceleration);
+    return d;
+}
+
 State restAt(Position position) noexcept {
     return {position, Velocity{}, Acceleration{}};
 }
@@ -36,19 +42,20 @@ void Motion::hold(Position position) noexcept {
 }
 
 ErrorId Motion::begin(const Command& command) noexcept {
+    const Dynamics dynamics = holdingVelocity(command.dynamics);
     switch (command.kind) {
         case CommandKind::MoveAbsolute: {
             const bool modulo = traits_->period > Distance{};
-            return beginPosition(modulo ? moduloTarget(command) : command.position,
-                                 command.dynamics);
+            return beginPosition(modulo ? moduloTarget(command, dynamics) : command.position,
+                                 dynamics);
         }
         case CommandKind::MoveRelative:
-            return beginPosition(set_.position + command.distance, command.dynamics);
+            return beginPosition(set_.position + command.distance, dynamics);
         case CommandKind::MoveVelocity:
-            return beginVelocity(command.dynamics);
+            return beginVelocity(dynamics);
         case CommandKind::Halt:
         case CommandKind::Stop:
-            return beginBraking(command.dynamics);
+            return beginBraking(dynamics);
         case CommandKind::PowerOn:
         case CommandKind::PowerOff:
         case CommandKind::Reset:
@@ -59,10 +66,27 @@ ErrorId Motion::begin(const Command& command) noexcept {
     return ErrorId::InvalidParameter;
 }
 
+/// Taking the present acceleration back with a gentle jerk gains velocity (a²/2j). Where that would
+/// pass the axis' limit, the jerk is raised: the motion so far kept the limit, so its own jerk is
+/// enough.
+Dynamics Motion::holdingVelocity(const Dynamics& dynamics) const noexcept {
+    Dynamics d = dynamics;
+    const double a = set_.acceleration.count();
+    if (a == 0.0) return d;
+    const double limit = traits_->limits.velocity.count();
+    const double v = set_.velocity.count();
+    const double room = a > 0.0 ? limit - v : limit + v;
+    const double hardest = std::max(traits_->limits.jerk, traits_->limits.stopJerk).count();
+    const double needed = room > 0.0 ? std::min(a * a / (2.0 * room), hardest) : hardest;
+    d.jerk = std::max(d.jerk, core::Jerk{needed});
+    return d;
+}
+
 bool Motion::beginStop() noexcept {
     const LimitParams& l = traits_->limits;
-    const auto profile = planner::planStop(
-        set_, braking({l.velocity, l.stopDeceleration, l.stopDeceleration, l.stopJerk}));
+    const Dynamics d =
+        holdingVelocity({l.velocity, l.stopDeceleration, l.stopDeceleration, l.stopJerk});
+    const auto profile = planner::planStop(set_, braking(d));
     if (!profile.ok()) return false;
     run(profile.value());
     return true;
@@ -79,18 +103,33 @@ ErrorId Motion::beginBraking(const Dynamics& dynamics) noexcept {
     return ErrorId::None;
 }
 
+/// Whether the way to go has a turn in it, and whether it stays inside the software limits until
+/// there. `wanted` is the direction of travel, `target` where it ends, if it does.
+ErrorId Motion::judgeWay(const Dynamics& dynamics, double wanted, std::optional<Position> target,
+                         bool& turns) const noexcept {
+    turns = false;
+    if (!underWay()) return ErrorId::None;
+    auto stop = stopFrom(set_, dynamics);
+    if (!stop) return ErrorId::ProfileNotFeasible;
+    const double present =
+        set_.velocity == Velocity{} ? set_.acceleration.count() : set_.velocity.count();
+    const double rest = (*stop - set_.position).count();
+    turns = present * wanted < 0.0 || rest * wanted < 0.0;
+    if (target) turns = turns || (*stop - *target).count() * wanted > 0.0;
+    if (turns) {
+        // The way back is planned with the smaller limit, so braking takes as long as that needs.
+        stop = stopFrom(set_, gentler(dynamics));
+        if (!stop) return ErrorId::ProfileNotFeasible;
+    }
+    return limitPassed(*stop) ? ErrorId::SWLimitReached : ErrorId::None;
+}
+
 ErrorId Motion::beginPosition(Position target, const Dynamics& dynamics) noexcept {
     if (const ErrorId bad = checkTarget(*traits_, target); bad != ErrorId::None) return bad;
     const bool forward = target >= set_.position;
     bool turns = false;
-    if (underWay()) {
-        const auto stop = stopFrom(set_, dynamics);
-        if (!stop) return ErrorId::ProfileNotFeasible;
-        if (limitPassed(*stop)) return ErrorId::SWLimitReached;
-        const bool runsBack = (set_.velocity > Velocity{}) != forward;
-        const bool overruns = forward ? *stop > target : *stop < target;
-        turns = runsBack || overruns;
-    }
+    const ErrorId way = judgeWay(dynamics, (target - set_.position).count(), target, turns);
+    if (way != ErrorId::None) return way;
     const auto profile = planner::plan(set_, {planner::TargetKind::State, restAt(target)},
                                        moving(dynamics, forward, turns));
     if (!profile.ok()) return ErrorId::ProfileNotFeasible;
@@ -101,12 +140,9 @@ ErrorId Motion::beginPosition(Position target, const Dynamics& dynamics) noexcep
 
 ErrorId Motion::beginVelocity(const Dynamics& dynamics) noexcept {
     const Velocity wanted = dynamics.velocity;
-    if (underWay()) {
-        const auto stop = stopFrom(set_, dynamics);
-        if (!stop) return ErrorId::ProfileNotFeasible;
-        if (limitPassed(*stop)) return ErrorId::SWLimitReached;
-    }
-    const bool turns = set_.velocity.count() * wanted.count() < 0.0;
+    bool turns = false;
+    const ErrorId way = judgeWay(dynamics, wanted.count(), std::nullopt, turns);
+    if (way != ErrorId::None) return way;
     const bool forward =
         set_.velocity == Velocity{} ? wanted >= Velocity{} : set_.velocity > Velocity{};
     Dynamics d = dynamics;
@@ -232,11 +268,11 @@ planner::Limits Motion::moving(const Dynamics& d, bool forward, bool turns) cons
     // way turns, one sign of acceleration does both, so the smaller limit holds.
     Acceleration up = forward ? d.acceleration : d.deceleration;
     Acceleration down = forward ? d.deceleration : d.acceleration;
-    if (turns) up = down = std::min(d.acceleration, d.deceleration);
+    if (turns) up = down = gentler(d).deceleration;
     return {d.velocity, -d.velocity, up, -down, d.jerk};
 }
 
-Position Motion::moduloTarget(const Command& command) noexcept {
+Position Motion::moduloTarget(const Command& command, const Dynamics& dynamics) noexcept {
     const double period = traits_->period.count();
     const double from = set_.position.count();
     // Way forward in [0, period); less than half a count either way is "there already".
@@ -256,7 +292,7 @@ Position Motion::moduloTarget(const Command& command) noexcept {
     double travel = up ? forward : backward;
     if (underWay()) {
         // Not to be stopped in time: as many more turns as braking takes.
-        const auto stop = stopFrom(set_, command.dynamics);
+        const auto stop = stopFrom(set_, dynamics);
         const double braking = stop ? (*stop - set_.position).count() : 0.0;
         const double missing = up ? braking - travel : travel - braking;
         if (missing > 0.0) travel += (up ? period : -period) * std::ceil(missing / period);

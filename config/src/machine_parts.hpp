@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 #include <takt/config/machine_config.hpp>
-#include <takt/wire/device_description.hpp>
 #include <vector>
 
 #include "drive_profile.hpp"

@@ -149,16 +149,18 @@ twin::TwinParams readTwin(ElementReader reader, const NetworkPart& network,
         const auto found = std::find_if(params.devices.begin(), params.devices.end(),
                                         [&](const auto& device) { return device.slave == name; });
         if (!name.empty()) deviceReader.relabel(fmt::format("twin of '{}'", name));
-        if (!name.empty() && found == params.devices.end()) {
-            deviceReader.error("slave", fmt::format("there is no slave '{}'", name),
-                               "the slaves of <Network>");
-        } else if (!name.empty() && !seen.insert(name).second) {
+        if (found == params.devices.end()) {
+            if (!name.empty()) {
+                deviceReader.error("slave", fmt::format("there is no slave '{}'", name),
+                                   "the slaves of <Network>");
+            }
+            continue;  // its positions cannot be understood without its axis
+        }
+        if (!seen.insert(name).second) {
             deviceReader.error("slave", fmt::format("the slave '{}' is described twice", name),
                                "once");
         }
-        twin::TwinDeviceParams unused;
-        readDevice(deviceReader, axisOf(name, axes),
-                   found != params.devices.end() ? *found : unused);
+        readDevice(deviceReader, axisOf(name, axes), *found);
     }
     reader.finish();
     return params;

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-
 #include <takt/axis/axis.hpp>
 
 #include "sim_drive.hpp"
@@ -35,8 +34,8 @@ inline axis::AxisParams testParams() {
     return p;
 }
 
-/// First, second and third differences of the set position against the axis' limits, cycle by cycle. It
-/// knows nothing of how the set position came about.
+/// First, second and third differences of the set position against the axis' limits, cycle by
+/// cycle. It knows nothing of how the set position came about.
 class ContinuityCheck {
 public:
     ContinuityCheck(const axis::LimitParams& limits, double cycle)
@@ -164,7 +163,8 @@ private:
         }
         continuity.add(s.set.count(), k);
         // What leaves is the set position in counts, to the half count of rounding.
-        const double counts = (s.set - x.scaling().toUnits(0)).count() / x.traits().resolution.count();
+        const double counts =
+            (s.set - x.scaling().toUnits(0)).count() / x.traits().resolution.count();
         const auto folded = static_cast<std::int32_t>(
             static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::llround(counts))));
         EXPECT_LE(std::abs(static_cast<std::int64_t>(folded) - s.target), 1) << "cycle " << k;

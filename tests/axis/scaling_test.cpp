@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <stdexcept>
-
 #include <takt/axis/scaling.hpp>
 
 using namespace takt;
@@ -55,11 +54,13 @@ TEST(Scaling, GivesEveryCountBackOverAThousandMillionCounts) {
 }
 
 TEST(Scaling, DoesNotDriftWithARationalGear) {
-    // One output turn = 7/3 motor turns. After 3e8 output turns the angle is exact, computed in whole numbers.
+    // One output turn = 7/3 motor turns. After 3e8 output turns the angle is exact, computed in
+    // whole numbers.
     const axis::Scaling s{gear(10, 7, 3, 360)};
     const std::int64_t turns = 300'000'000;
     EXPECT_DOUBLE_EQ(s.toUnits(turns / 3 * 70).count(), static_cast<double>(turns) * 360.0);
-    EXPECT_NEAR(s.toUnits(turns / 3 * 70 + 7).count() - s.toUnits(turns / 3 * 70).count(), 108.0, 2e-5);
+    EXPECT_NEAR(s.toUnits(turns / 3 * 70 + 7).count() - s.toUnits(turns / 3 * 70).count(), 108.0,
+                2e-5);
 }
 
 TEST(Scaling, ReadsTheOriginAsItsPosition) {

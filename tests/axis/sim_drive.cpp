@@ -29,7 +29,9 @@ std::int32_t get32(std::span<const std::uint8_t> b, std::size_t at) {
 
 }  // namespace
 
-SimDrive::SimDrive() { latchInputs(); }
+SimDrive::SimDrive() {
+    latchInputs();
+}
 
 axis::DriveBindings SimDrive::bindings() {
     axis::DriveBindings b;
@@ -51,7 +53,7 @@ void SimDrive::exchange() {
         health.inputsFresh = true;
         health.lostInRow = 0;
         inputs = latched_;
-        takeOutputs();
+        if (health.operational) takeOutputs();
     }
     stepState();
     stepMotor();
@@ -118,14 +120,16 @@ void SimDrive::stepState() {
             break;
         case DriveState::NotReadyToSwitchOn:
         case DriveState::FaultReactionActive:
-        case DriveState::Fault: break;
+        case DriveState::Fault:
+            break;
     }
 }
 
 void SimDrive::stepMotor() {
     const std::int64_t before = position;
     if (state == DriveState::OperationEnabled && mode == 8) {
-        // One cycle from target to motor; the target's 32 bits are unfolded around the present position.
+        // One cycle from target to motor; the target's 32 bits are unfolded around the present
+        // position.
         const auto delta = static_cast<std::int32_t>(static_cast<std::uint32_t>(pendingTarget_) -
                                                      static_cast<std::uint32_t>(position));
         position += delta;
@@ -179,14 +183,29 @@ void SimDrive::stepHoming() {
 std::uint16_t SimDrive::statusword() const {
     std::uint16_t s = 0x0210;
     switch (state) {
-        case DriveState::NotReadyToSwitchOn: break;
-        case DriveState::SwitchOnDisabled: s |= 0x0040U; break;
-        case DriveState::ReadyToSwitchOn: s |= 0x0021U; break;
-        case DriveState::SwitchedOn: s |= 0x0023U; break;
-        case DriveState::OperationEnabled: s |= 0x0027U; break;
-        case DriveState::QuickStopActive: s |= 0x0007U; break;
-        case DriveState::FaultReactionActive: s |= 0x000FU; break;
-        case DriveState::Fault: s |= 0x0008U; break;
+        case DriveState::NotReadyToSwitchOn:
+            break;
+        case DriveState::SwitchOnDisabled:
+            s |= 0x0040U;
+            break;
+        case DriveState::ReadyToSwitchOn:
+            s |= 0x0021U;
+            break;
+        case DriveState::SwitchedOn:
+            s |= 0x0023U;
+            break;
+        case DriveState::OperationEnabled:
+            s |= 0x0027U;
+            break;
+        case DriveState::QuickStopActive:
+            s |= 0x0007U;
+            break;
+        case DriveState::FaultReactionActive:
+            s |= 0x000FU;
+            break;
+        case DriveState::Fault:
+            s |= 0x0008U;
+            break;
     }
     if (mode == 6) {
         if (homingDone_) s |= 0x1000U;

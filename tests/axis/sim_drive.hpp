@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
-
 #include <takt/axis/axis_params.hpp>
 #include <takt/core/cia402.hpp>
 #include <takt/core/object_access.hpp>
@@ -12,8 +11,8 @@
 
 namespace takt::test {
 
-/// A CiA 402 drive made of the standard's tables, for tests of the master side: bytes in, bytes out, one frame of
-/// delay each way and one cycle from target to motor.
+/// A CiA 402 drive made of the standard's tables, for tests of the master side: bytes in, bytes
+/// out, one frame of delay each way and one cycle from target to motor.
 class SimDrive {
 public:
     SimDrive();
@@ -25,21 +24,21 @@ public:
     void exchange();
 
     // Knobs.
-    std::int64_t position{0};          ///< motor, counts
-    bool enableInput{true};            ///< STO and enable input
-    std::uint16_t faultCode{0};        ///< not 0: the drive is in fault
+    std::int64_t position{0};    ///< motor, counts
+    bool enableInput{true};      ///< STO and enable input
+    std::uint16_t faultCode{0};  ///< not 0: the drive is in fault
     bool faultResettable{true};
     std::optional<std::int64_t> blockedAt;  ///< the motor stands here whatever is asked
-    bool refuseEnable{false};          ///< never leaves Switched on
-    bool frameLost{false};             ///< the next frames do not come back
-    int enableDelay{2};                ///< cycles from the order to Operation enabled
-    std::int8_t fixedMode{0};          ///< not 0: 6061h shows this, whatever is asked
-    std::int64_t homingTravel{0};      ///< counts to move before the reference
-    std::int64_t homingZeroAt{0};      ///< counts left on the position when homing is done
+    bool refuseEnable{false};               ///< never leaves Switched on
+    bool frameLost{false};                  ///< the next frames do not come back
+    int enableDelay{2};                     ///< cycles from the order to Operation enabled
+    std::int8_t fixedMode{0};               ///< not 0: 6061h shows this, whatever is asked
+    std::int64_t homingTravel{0};           ///< counts to move before the reference
+    std::int64_t homingZeroAt{0};           ///< counts left on the position when homing is done
     bool homingFails{false};
     bool homingNeverEnds{false};
-    bool keepsHomingBits{true};        ///< the result stays visible until the next start
-    std::uint32_t quickStopStep{50};   ///< counts per cycle lost per cycle in a quick stop
+    bool keepsHomingBits{true};       ///< the result stays visible until the next start
+    std::uint32_t quickStopStep{50};  ///< counts per cycle lost per cycle in a quick stop
 
     // What was seen.
     core::cia402::DriveState state{core::cia402::DriveState::SwitchOnDisabled};

@@ -53,10 +53,17 @@ public:
     [[nodiscard]] std::uint64_t steps() const noexcept { return steps_; }
 
 private:
+    friend struct AxisTestAccess;
+
+    [[nodiscard]] ErrorId judgeWay(const Dynamics& dynamics, double wanted,
+                                   std::optional<core::Position> target,
+                                   bool& turns) const noexcept;
     [[nodiscard]] ErrorId beginPosition(core::Position target, const Dynamics& dynamics) noexcept;
     [[nodiscard]] ErrorId beginVelocity(const Dynamics& dynamics) noexcept;
     [[nodiscard]] ErrorId beginBraking(const Dynamics& dynamics) noexcept;
-    [[nodiscard]] core::Position moduloTarget(const Command& command) noexcept;
+    [[nodiscard]] core::Position moduloTarget(const Command& command,
+                                              const Dynamics& dynamics) noexcept;
+    [[nodiscard]] Dynamics holdingVelocity(const Dynamics& dynamics) const noexcept;
     [[nodiscard]] std::optional<core::Position> stopFrom(const planner::State& from,
                                                          const Dynamics& dynamics) const noexcept;
     [[nodiscard]] std::optional<core::Position> limitPassed(core::Position stopsAt) const noexcept;
