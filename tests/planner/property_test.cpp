@@ -165,7 +165,8 @@ RC_GTEST_PROP(PlannerProperty, AxesArriveTogetherWhateverTheirOrder, (std::uint6
     }
     std::reverse(requests.begin(), requests.end());
     Trajectory other{requests.size()};
-    RC_ASSERT(other.plan(requests, {}).value() == duration.value());
+    const double again = other.plan(requests, {}).value().count();
+    RC_ASSERT(std::fabs(again - duration.value().count()) <= 1e-12 * again);
 }
 
 RC_GTEST_PROP(PlannerProperty, DurationsInWholeCyclesAreTheLeastPossible, (std::uint64_t seed)) {
@@ -177,7 +178,8 @@ RC_GTEST_PROP(PlannerProperty, DurationsInWholeCyclesAreTheLeastPossible, (std::
     const double duration = trajectory.plan(requests, timing).value().count();
     const double cycles = duration / 0.05;
     RC_ASSERT(std::fabs(cycles - std::round(cycles)) < 1e-9);
-    for (double earlier = duration - 0.05; earlier > 0; earlier -= 0.05) {
+    for (int k = 1; k <= 20 && duration - 0.05 * k > 0; ++k) {
+        const double earlier = duration - 0.05 * k;
         bool all = true;
         for (const auto& r : requests) {
             all = all && reachable({r.from, r.target, r.limits}, earlier * (1 - 1e-9L), 0);
