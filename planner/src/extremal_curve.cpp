@@ -82,7 +82,7 @@ ExtremalCurve::Point ExtremalCurve::meeting(double u, double distance) const noe
     // that.
     const double dc = 4.0 * kEps * (std::fabs(main_.vz) + std::fabs(other_.vz)) * invJerk_;
     // One ramp begins at its start there, so the other one makes up for it.
-    const double free = startsOther(u) ? u : std::sqrt(u * u + c_);
+    const double free = startsOther(u) ? std::fabs(u) : std::sqrt(u * u + c_);
     const double movable = free * free > dc ? dc / free : std::sqrt(dc);
     const double pace = rate(u);
     const double room = std::fabs(pace) * movable;
@@ -236,8 +236,7 @@ ExtremalCurve::Point ExtremalCurve::crossingInLow(double u, double distance) con
     }
     const double missing = distance - at(end).distance;
     if (missing <= 0.0) return point(root(from, end, distance));
-    if (missing <= tolerance(end)) return point(end);
-    return {0.0, 0.0, 0.0, false};
+    return meeting(end, distance);
 }
 
 ExtremalCurve::Point ExtremalCurve::crossingInHigh(double u, double distance) const noexcept {
@@ -264,6 +263,7 @@ void ExtremalCurve::pieces(const Point& p, double sign, Pieces& out) const noexc
         u = main_.full;
     } else {
         u += 0.5 * shiftMain;
+        both += 0.5 * shiftMain;
     }
     if (uo > other_.full) {
         holdOther = (uu + c_ - other_.full * other_.full) / other_.full + shift;

@@ -78,7 +78,7 @@ public:
 private:
     /// The other ramp, not the main one, has no first piece at u.
     [[nodiscard]] bool startsOther(double u) const noexcept {
-        return u == star_ && star_ > main_.kt;
+        return std::fabs(u) == star_ && u > main_.kt;
     }
     [[nodiscard]] double rootBothHolding(double distance) const noexcept;
     [[nodiscard]] double bothHold() const noexcept;

@@ -224,6 +224,7 @@ private:
             if (zero > 0 && zero < t) within(v_ + zero * a_ / 2, 0);
         }
         way_ += std::fabs(v_) * t + std::fabs(a_) * t * t / 2;
+        fastest_ = std::max(fastest_, std::fabs(v_));
         p_ += t * (v_ + t * (a_ / 2 + t * j / 6));
         v_ += t * (a_ + t * j / 2);
         a_ += t * j;
@@ -247,7 +248,8 @@ private:
     void end() {
         const State& goal = case_.target.state;
         const Real p0 = case_.from.position.count();
-        const Real scale = way_ + std::fabs(p0) + std::fabs(goal.position.count());
+        const Real scale =
+            way_ + 1e-3L * fastest_ * t_ + std::fabs(p0) + std::fabs(goal.position.count());
         if (case_.target.kind == TargetKind::State) {
             // A state on the way is known to some ulps of the length the axis needs to stop.
             const Real grain = 64 * std::numeric_limits<double>::epsilon() * vscale_ *
@@ -270,7 +272,7 @@ private:
     const Case& case_;
     const Profile& profile_;
     std::string fault_;
-    Real t_{0}, p_{0}, v_{0}, a_{0}, way_{0};
+    Real t_{0}, p_{0}, fastest_{0}, v_{0}, a_{0}, way_{0};
     Real vhigh_{0}, vlow_{0}, ahigh_{0}, alow_{0}, vscale_{0}, ascale_{0}, least_{0};
 };
 

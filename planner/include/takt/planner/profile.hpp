@@ -45,6 +45,7 @@ enum class PlanError : std::uint8_t {
     InvalidLimits,  ///< a limit is zero or has the wrong sign
     TargetNotViable,  ///< target velocity or acceleration outside the limits, or not to be held
     NoSolution,       ///< numerically without an answer; never for a viable problem
+    OutOfRange,       ///< a position range would have to be left (planWithin)
 };
 
 /// The number of a request that an error is about.
