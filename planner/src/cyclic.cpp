@@ -43,8 +43,8 @@ bool CyclicGenerator::sameAsBefore(std::span<const Goal> goals,
 
 std::optional<InputFault> CyclicGenerator::planAgain(std::span<const Goal> goals,
                                                      const Timing& timing) noexcept {
-    std::array<AxisRequest, Trajectory::MaxAxes> requests{};
-    std::array<State, Trajectory::MaxAxes> now = start_;
+    std::array<AxisRequest, Trajectory::maxAxes> requests{};
+    std::array<State, Trajectory::maxAxes> now = start_;
     if (moving_) sampleNow(now);
     for (std::size_t i = 0; i < goals.size(); ++i) {
         requests[i] = {now[i], goals[i].target, goals[i].limits, goals[i].enabled, {}};

@@ -114,7 +114,7 @@ void ProfileBuilder::scaled(const Profile& line, double share, const State& from
 }
 
 bool ProfileBuilder::joined(const Profile& first, const Profile& second, Profile& out) noexcept {
-    if (first.size_ + second.size_ > Profile::Capacity) return false;
+    if (first.size_ + second.size_ > Profile::capacity) return false;
     out = first;
     for (std::size_t i = 0; i < second.size_; ++i) {
         Segment segment = second.segments_[i];

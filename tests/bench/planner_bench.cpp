@@ -11,7 +11,7 @@ void solve(benchmark::State& state) {
     const Workload workload{static_cast<std::size_t>(state.range(0)), 1000};
     Trajectory trajectory{workload.axes()};
     std::size_t i = 0;
-    for (auto _ : state) {
+    while (state.KeepRunning()) {
         benchmark::DoNotOptimize(workload.plan(i, trajectory));
         i = (i + 1) % workload.size();
     }
@@ -22,9 +22,9 @@ void sampleAll(benchmark::State& state) {
     const Workload workload{static_cast<std::size_t>(state.range(0)), 1};
     Trajectory trajectory{workload.axes()};
     const double duration = workload.plan(0, trajectory);
-    std::array<State, Trajectory::MaxAxes> states{};
+    std::array<State, Trajectory::maxAxes> states{};
     double part = 0.0;
-    for (auto _ : state) {
+    while (state.KeepRunning()) {
         part = part < 1.0 ? part + 0.0137 : 0.0;
         trajectory.sample(core::Seconds{part * duration}, states);
         benchmark::DoNotOptimize(states);

@@ -18,7 +18,7 @@ __attribute__((noinline)) double countedSolve(const Workload& workload, Trajecto
 }
 
 __attribute__((noinline)) double countedSample(const Trajectory& trajectory, int times) {
-    std::array<State, Trajectory::MaxAxes> states{};
+    std::array<State, Trajectory::maxAxes> states{};
     double sum = 0.0;
     for (int i = 0; i < times; ++i) {
         trajectory.sample(trajectory.duration() * (static_cast<double>(i) / times), states);

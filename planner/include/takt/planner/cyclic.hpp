@@ -22,7 +22,7 @@ struct Goal {
 ///     auto error = generator.step(goals, timing, states);     // every cycle
 class CyclicGenerator {
 public:
-    /// \pre 1 <= axes <= Trajectory::MaxAxes, cycle > 0
+    /// \pre 1 <= axes <= Trajectory::maxAxes, cycle > 0
     CyclicGenerator(std::size_t axes, core::Seconds cycle);
 
     /// rt. Forgets the motion; the axes are at these states. \pre states.size() == axes
@@ -51,8 +51,8 @@ private:
     core::Seconds cycle_;
     double cyclesDone_{0.0};
     bool moving_{false};
-    std::array<State, Trajectory::MaxAxes> start_{};
-    std::array<Goal, Trajectory::MaxAxes> goals_{};
+    std::array<State, Trajectory::maxAxes> start_{};
+    std::array<Goal, Trajectory::maxAxes> goals_{};
     Timing timing_{};
 };
 

@@ -19,7 +19,7 @@ namespace takt::planner {
 ///     path.sample(time, states);
 class WaypointTrajectory {
 public:
-    /// \pre 1 <= axes <= Trajectory::MaxAxes, maxPoints >= 1
+    /// \pre 1 <= axes <= Trajectory::maxAxes, maxPoints >= 1
     WaypointTrajectory(std::size_t axes, std::size_t maxPoints);
 
     /// A refused request leaves the trajectory as it was.
