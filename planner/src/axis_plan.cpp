@@ -110,6 +110,23 @@ double AxisPlan::firstPossible(double notBefore) const noexcept {
     return least <= left ? notBefore : least + brakingTime_;
 }
 
+void AxisPlan::marks(Marks& out) const noexcept {
+    Marks all;
+    static_cast<void>(all.push(0.0));
+    if (order_ == Order::Third && target_.kind == TargetKind::State) {
+        detail::marks(inner_, all);
+    } else if (order_ == Order::Third) {
+        velocityMarks(inner_, all);
+    } else if (order_ == Order::Second && target_.kind == TargetKind::State) {
+        secondOrderMarks(inner_, all);
+    }
+    for (double& mark : all) mark = std::max(mark + brakingTime_, duration_);
+    std::sort(all.begin(), all.end());
+    for (const double mark : all) {
+        if (out.empty() || mark > out.back()) static_cast<void>(out.push(mark));
+    }
+}
+
 void AxisPlan::writeFastest(Profile& out) const noexcept {
     if (order_ == Order::First) return writeFirstOrder(duration_, out);
     Pieces pieces;
@@ -154,8 +171,9 @@ bool AxisPlan::writeLasting(double duration, Profile& out) const noexcept {
 
 bool AxisPlan::canWait(double duration) const noexcept {
     if (order_ != Order::Third || target_.kind != TargetKind::State) return false;
-    return fastest_.direct && whole_.af == 0.0 &&
-           std::fabs(whole_.vf) * duration <= whole_.nearDistance;
+    const double gain = std::fabs(whole_.af) * duration;
+    return fastest_.direct && gain <= whole_.nearVelocity &&
+           (std::fabs(whole_.vf) + 0.5 * gain) * duration <= whole_.nearDistance;
 }
 
 void AxisPlan::write(Pieces& pieces, Profile& out) const noexcept {

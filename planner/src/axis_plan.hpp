@@ -18,6 +18,9 @@ public:
     [[nodiscard]] double duration() const noexcept { return duration_; }
     /// The least possible duration >= notBefore.
     [[nodiscard]] double firstPossible(double notBefore) const noexcept;
+    /// Durations, sorted and none below duration(), between which everything is possible or nothing
+    /// is.
+    void marks(Marks& out) const noexcept;
     /// The fastest profile.
     void writeFastest(Profile& out) const noexcept;
     /// A profile of exactly `duration`; false, and nothing written, if that is not possible.

@@ -63,6 +63,43 @@ bool isDirect(const Problem& p, double& duration) noexcept {
     return std::fabs(p.distance - way) <= std::max(p.tolerance + rounding * time, p.nearDistance);
 }
 
+/// The crossings within a stretch on which the distance only rises or only falls.
+void markBetween(const ExtremalCurve& curve, double lo, double hi, double distance,
+                 Marks& out) noexcept {
+    const double missingLo = distance - curve.at(lo).distance;
+    const double missingHi = distance - curve.at(hi).distance;
+    if ((missingLo > 0.0) == (missingHi > 0.0)) return;
+    const double u = curve.anyRoot(lo, hi, distance);
+    static_cast<void>(out.push(curve.at(u).duration));
+}
+
+/// The crossings within a block, split where the distance turns.
+void markBlock(const ExtremalCurve& curve, double lo, double hi, double distance,
+               Marks& out) noexcept {
+    static_cast<void>(out.push(curve.at(lo).duration));
+    static_cast<void>(out.push(curve.at(hi).duration));
+    const double least = lo < 0.0 ? curve.leastRate(lo, hi) : lo;
+    double from = lo;
+    for (const double to : {least, hi}) {
+        if (!(to > from)) continue;
+        double turn = to;
+        if ((curve.rate(from) > 0.0) != (curve.rate(to) > 0.0)) turn = curve.rateZero(from, to);
+        markBetween(curve, from, turn, distance, out);
+        markBetween(curve, turn, to, distance, out);
+        from = to;
+    }
+}
+
+void marksOf(const ExtremalCurve& curve, double distance, Marks& out) noexcept {
+    if (curve.hasLow()) markBlock(curve, curve.begin(), curve.lowEnd(), distance, out);
+    markBlock(curve, curve.highBegin(), curve.top(), distance, out);
+    const auto atTop = curve.at(curve.top());
+    if (distance > atTop.distance) {
+        static_cast<void>(
+            out.push(atTop.duration + (distance - atTop.distance) / curve.topVelocity()));
+    }
+}
+
 }  // namespace
 
 Possible fastest(const Problem& problem) noexcept {
@@ -91,6 +128,13 @@ Possible firstPossible(const Problem& problem, double notBefore) noexcept {
     if (beyond > up.tolerance(high.u)) return later(problem, up, false, high, beyond);
     if (below > down.tolerance(low.u)) return later(problem, down, true, low, below);
     return {notBefore, {}, false, false, false, true};
+}
+
+void marks(const Problem& problem, Marks& out) noexcept {
+    const ExtremalCurve up{problem};
+    const ExtremalCurve down{mirrored(problem)};
+    marksOf(up, problem.distance, out);
+    marksOf(down, -problem.distance, out);
 }
 
 void piecesOf(const Problem& problem, const Possible& possible, Pieces& out) noexcept {

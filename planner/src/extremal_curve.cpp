@@ -185,6 +185,16 @@ double ExtremalCurve::root(double lo, double hi, double distance) const noexcept
     return u;
 }
 
+double ExtremalCurve::anyRoot(double lo, double hi, double distance) const noexcept {
+    const bool rising = at(hi).distance > distance;
+    for (int i = 0; i < kMostSteps; ++i) {
+        const double middle = 0.5 * (lo + hi);
+        if (middle <= lo || middle >= hi) break;
+        ((at(middle).distance > distance) == rising ? hi : lo) = middle;
+    }
+    return 0.5 * (lo + hi);
+}
+
 double ExtremalCurve::rateZero(double lo, double hi) const noexcept {
     const bool rising = rate(hi) > 0.0;
     for (int i = 0; i < kMostSteps; ++i) {

@@ -64,6 +64,8 @@ public:
     [[nodiscard]] Point crossingInHigh(double u, double distance) const noexcept;
     /// Within [lo, hi], where the sign of at(u).distance - distance changes.
     [[nodiscard]] double root(double lo, double hi, double distance) const noexcept;
+    /// The same where the distance may also fall; by halving.
+    [[nodiscard]] double anyRoot(double lo, double hi, double distance) const noexcept;
     /// The zero of the rate in [lo, hi], whose ends have different signs of it.
     [[nodiscard]] double rateZero(double lo, double hi) const noexcept;
     /// Where the rate is least on [lo, hi], lo < hi <= 0.

@@ -35,6 +35,10 @@ public:
         const double vp = std::sqrt(std::max(0.0, squares / (up_ + down_)));
         return {std::clamp(vp, foot_, top_), 0.0};
     }
+    /// Where the distance is passed while it still falls with vp, which is below zero there.
+    [[nodiscard]] Point fallingCrossing() const noexcept {
+        return {std::clamp(-crossing().vp, foot_, top_), 0.0};
+    }
     [[nodiscard]] Point lasting(double time) const noexcept {
         const double vp = (time + p_.v0 * up_ + p_.vf * down_) / (up_ + down_);
         if (vp <= top_) return {std::max(vp, foot_), 0.0};
@@ -143,6 +147,15 @@ double firstPossibleSecondOrder(const Problem& problem, double notBefore) noexce
         return std::max(notBefore, crossingDuration(down));
     }
     return notBefore;
+}
+
+void secondOrderMarks(const Problem& problem, Marks& out) noexcept {
+    const Problem mirror = mirrored(problem);
+    for (const Hill& hill : {Hill{problem}, Hill{mirror}}) {
+        static_cast<void>(out.push(hill.duration(hill.foot())));
+        static_cast<void>(out.push(hill.duration(hill.crossing())));
+        static_cast<void>(out.push(hill.duration(hill.fallingCrossing())));
+    }
 }
 
 bool lastingSecondOrder(const Problem& problem, double duration, Pieces& out) noexcept {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "problem.hpp"
+#include "duration.hpp"
 
 /// Motion without a jerk limit: pieces of constant acceleration. The accelerations of start and
 /// target are ignored. The same two curves of extremal profiles as in third order, all in closed
@@ -15,6 +15,9 @@ double fastestSecondOrder(const Problem& problem, Pieces& out) noexcept;
 
 /// The least possible duration >= notBefore.
 [[nodiscard]] double firstPossibleSecondOrder(const Problem& problem, double notBefore) noexcept;
+
+/// Durations at which the target may begin or cease to be possible.
+void secondOrderMarks(const Problem& problem, Marks& out) noexcept;
 
 /// A profile that takes exactly `duration`; false if that is not possible.
 [[nodiscard]] bool lastingSecondOrder(const Problem& problem, double duration,

@@ -54,6 +54,31 @@ TEST_F(GantryRun, PutsNoMalformedFrameOnTheWire) {
     EXPECT_EQ(malformed.output.find("ECAT"), std::string::npos) << malformed.output.substr(0, 2000);
 }
 
+TEST_F(GantryRun, CapturesEveryFrameTwiceAndNothingElse) {
+    const auto all = runCommand({"sh", "-c", "tshark -r a.pcapng -Y ecat -T fields -e frame.number 2>/dev/null | wc -l"},
+                                folder);
+    EXPECT_THAT(result.output, HasSubstr("capture: " + std::to_string(std::stoul(all.output)) + " frames"));
+    const auto sent = runCommand({"sh", "-c",
+                                  "tshark -r a.pcapng -Y 'ecat and frame.packet_flags_direction == 2' -T fields "
+                                  "-e frame.number 2>/dev/null | wc -l"},
+                                 folder);
+    EXPECT_GT(std::stoul(sent.output), 10000U);
+    EXPECT_EQ(std::stoul(all.output), 2 * std::stoul(sent.output));
+}
+
+TEST_F(GantryRun, IsWatchedByTheTrapInEveryCycle) {
+    if (readFile(std::string{TAKT_BINARY_DIR} + "/libtakt_trap.so").empty()) {
+        SUCCEED() << "the sanitizers of this build replace what the trap watches";
+        return;
+    }
+    // One arming a cycle, one more after each pause in the memory link and after each program call.
+    const auto watched = runTakt({"run", Machine, "--fast", "--quiet"}, folder, {"TAKT_TRAP_REPORT=trap.txt"});
+    ASSERT_EQ(watched.exitCode, 0) << watched.output;
+    const std::string report = readFile(folder + "/trap.txt");
+    EXPECT_THAT(report, HasSubstr("no hit"));
+    EXPECT_GT(std::stoul(report.substr(report.find(' ') + 1)), 16000U) << report;
+}
+
 TEST_F(GantryRun, GetsTheWorkingCountersThatTheMachineFileForetells) {
     const auto judged = python({Source + "/tests/machine/working_counters.py", "a.pcapng", Machine});
     EXPECT_EQ(judged.exitCode, 0) << judged.output;
