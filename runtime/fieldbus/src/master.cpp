@@ -24,6 +24,7 @@ struct Master::Parts {
     void prepare() noexcept;
     void takeBus() noexcept;
     void takeMailboxStates() noexcept;
+    void fetchMail(std::span<const std::uint8_t> states) noexcept;
     void lookIntoMailboxes() noexcept;
     void appendExtras() noexcept;
     [[nodiscard]] bool mapped() const noexcept;
@@ -141,11 +142,14 @@ void Master::Parts::takeMailboxStates() noexcept {
     if (layout.mailboxBits == 0) return;
     const Reply reply = frames.reply(mailboxRead);
     if (!reply.served()) return;
-    for (std::size_t byte = 0; byte < reply.data.size(); ++byte) {
-        for (unsigned bits = reply.data[byte]; bits != 0; bits &= bits - 1) {
-            const std::size_t bit = byte * 8 + static_cast<std::size_t>(std::countr_zero(bits));
-            if (bit < mailboxSlave.size()) agents[mailboxSlave[bit]]->mailboxFull();
-        }
+    unsigned any = 0;
+    for (const std::uint8_t byte : reply.data) any |= byte;
+    if (any != 0) fetchMail(reply.data);
+}
+
+void Master::Parts::fetchMail(std::span<const std::uint8_t> states) noexcept {
+    for (std::size_t bit = 0; bit < mailboxSlave.size(); ++bit) {
+        if ((states[bit / 8] >> (bit % 8) & 1U) != 0) agents[mailboxSlave[bit]]->mailboxFull();
     }
 }
 
