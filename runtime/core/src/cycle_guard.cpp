@@ -2,6 +2,7 @@
 
 // Present only when the trap library of the tests is loaded in front of the program.
 extern "C" void taktTrapArm(bool on) __attribute__((weak));
+extern "C" void taktTrapMayThrow(bool on) __attribute__((weak));
 
 namespace takt::core {
 
@@ -22,6 +23,15 @@ CycleGuardPause::CycleGuardPause() noexcept : wasArmed_{armed} {
 
 CycleGuardPause::~CycleGuardPause() {
     if (wasArmed_) tell(true);
+}
+
+ProgramCallGuard::ProgramCallGuard() noexcept {
+    if (taktTrapMayThrow != nullptr) taktTrapMayThrow(true);
+}
+
+ProgramCallGuard::~ProgramCallGuard() {
+    if (taktTrapMayThrow != nullptr) taktTrapMayThrow(false);
+    if (armed) tell(true);
 }
 
 }  // namespace takt::core

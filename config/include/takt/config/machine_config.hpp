@@ -2,13 +2,12 @@
 
 #include <memory>
 #include <string>
-#include <vector>
-
 #include <takt/axis/axis_params.hpp>
 #include <takt/fieldbus/fieldbus_params.hpp>
 #include <takt/program/program_params.hpp>
 #include <takt/scheduler/scheduler_params.hpp>
 #include <takt/twin/twin_params.hpp>
+#include <vector>
 
 namespace takt::config {
 

@@ -17,8 +17,8 @@ private:
     friend class CycleGuardPause;
 };
 
-/// Lifts the guard where design allows it: inside the memory link (the simulated world is not the
-/// controller) and on the catch path of a program that threw.
+/// Lifts the guard where design allows it: inside the memory link, since the simulated world is not the
+/// controller.
 class CycleGuardPause {
 public:
     CycleGuardPause() noexcept;
@@ -28,6 +28,16 @@ public:
 
 private:
     bool wasArmed_;
+};
+
+/// Marks the call of a user program inside the cycle, catch clauses included. A program may throw (it is
+/// then stopped, fault F33): from the throw to the end of this object memory may be touched.
+class ProgramCallGuard {
+public:
+    ProgramCallGuard() noexcept;
+    ~ProgramCallGuard();
+    ProgramCallGuard(const ProgramCallGuard&) = delete;
+    ProgramCallGuard& operator=(const ProgramCallGuard&) = delete;
 };
 
 }  // namespace takt::core
