@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace takt::config {
@@ -19,17 +20,22 @@ bool isLetter(char c) noexcept {
     return (lower(c) >= 'a' && lower(c) <= 'z') || c == '_';
 }
 
-/// Levenshtein distance; a change of case counts nothing.
+/// Letters to add, drop, change or swap with their neighbour; a change of case counts nothing.
 std::size_t distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> beforeLast;
+    std::vector<std::size_t> last;
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
+    const auto same = [&](std::size_t i, std::size_t k) { return lower(a[i]) == lower(b[k]); };
     for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
+        beforeLast = std::move(last);
+        last = row;
         row[0] = i;
         for (std::size_t k = 1; k <= b.size(); ++k) {
-            const std::size_t change = diagonal + (lower(a[i - 1]) == lower(b[k - 1]) ? 0U : 1U);
-            diagonal = row[k];
-            row[k] = std::min({row[k] + 1, row[k - 1] + 1, change});
+            const std::size_t change = last[k - 1] + (same(i - 1, k - 1) ? 0U : 1U);
+            row[k] = std::min({last[k] + 1, row[k - 1] + 1, change});
+            const bool swapped = i > 1 && k > 1 && same(i - 1, k - 2) && same(i - 2, k - 1);
+            if (swapped) row[k] = std::min(row[k], beforeLast[k - 2] + 1);
         }
     }
     return row[b.size()];

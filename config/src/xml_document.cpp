@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
-#include <algorithm>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -69,26 +68,6 @@ int lineAt(std::string_view text, std::size_t offset) noexcept {
     return line;
 }
 
-void refuseDoubledAttributes(XmlElement element, const std::string& file,
-                             Diagnostics& diagnostics) {
-    std::vector<XmlAttribute> attributes = element.attributes();
-    std::stable_sort(attributes.begin(), attributes.end(),
-                     [](const XmlAttribute& a, const XmlAttribute& b) { return a.name < b.name; });
-    for (std::size_t i = 1; i < attributes.size(); ++i) {
-        if (attributes[i].name != attributes[i - 1].name) continue;
-        diagnostics.error({file, attributes[i].line},
-                          fmt::format("<{}>: the attribute '{}' is there twice", element.name(),
-                                      attributes[i].name),
-                          "once", "remove one of them");
-    }
-}
-
-/// The nesting is at most 100, the library has seen to it.
-void checkElements(XmlElement element, const std::string& file, Diagnostics& diagnostics) {
-    refuseDoubledAttributes(element, file, diagnostics);
-    for (const XmlElement child : element.children()) checkElements(child, file, diagnostics);
-}
-
 bool checkRoot(const tinyxml2::XMLDocument& dom, const std::string& file,
                Diagnostics& diagnostics) {
     int roots = 0;
@@ -115,7 +94,7 @@ const char* explain(tinyxml2::XMLError error) noexcept {
         case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
             return "an element is not closed, or closed by another name";
         case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
-            return "an attribute is not written as name=\"value\"";
+            return "an attribute is not written as name=\"value\", or is there twice";
         case tinyxml2::XML_ERROR_PARSING_COMMENT:
             return "a comment does not end";
         case tinyxml2::XML_ERROR_PARSING_CDATA:
@@ -228,9 +207,6 @@ std::optional<XmlDocument> loadXml(const std::filesystem::path& file, std::size_
         return std::nullopt;
     }
     if (!checkRoot(*dom, name, diagnostics)) return std::nullopt;
-    const std::size_t before = diagnostics.errorCount();
-    checkElements(XmlElement{dom->RootElement()}, name, diagnostics);
-    if (diagnostics.errorCount() != before) return std::nullopt;
     return XmlDocument{name, std::move(text), std::move(dom)};
 }
 

@@ -9,12 +9,12 @@
 namespace takt::record {
 namespace {
 
-const std::vector<std::string> StateNames{"Disabled", "Standstill"};
+const std::vector<std::string> stateNames{"Disabled", "Standstill"};
 
 TEST(MotionTrace, HasTheColumnsThatItsReadersExpect) {
     const std::vector<MotionAxis> axes{{"X", "mm"}};
     std::string names;
-    for (const TraceColumn& column : motionColumns(axes, StateNames)) names += column.name + " ";
+    for (const TraceColumn& column : motionColumns(axes, stateNames)) names += column.name + " ";
     EXPECT_EQ(names,
               "cycle t_ns X.state X.set X.setVel X.setAcc X.target X.actual X.actualVel X.lag "
               "X.controlword X.statusword X.mode X.error ");
@@ -23,7 +23,7 @@ TEST(MotionTrace, HasTheColumnsThatItsReadersExpect) {
 TEST(MotionTrace, WritesEverySampleIntoItsColumn) {
     const test::TemporaryFile temporary{".csv"};
     const std::vector<MotionAxis> axes{{"X", "mm"}};
-    TraceRecorder trace{motionColumns(axes, StateNames), 8};
+    TraceRecorder trace{motionColumns(axes, stateNames), 8};
     TraceRow row = trace.row();
     putCycle(row, 3, core::HostTime{std::chrono::milliseconds{3}});
     putAxis(row, {1, 1.5, 2.5, 3.5, -4, 5.5, 6.5, 7.5, 15, 0x1637, 8, 9});
@@ -40,7 +40,7 @@ TEST(MotionTrace, WritesEverySampleIntoItsColumn) {
 
 TEST(MotionPlot, ShowsOnlyColumnsThatTheTraceHas) {
     const std::vector<MotionAxis> axes{{"X", "mm"}, {"C", "deg"}};
-    const auto columns = motionColumns(axes, StateNames);
+    const auto columns = motionColumns(axes, stateNames);
     for (const std::string& name : columnsOf(motionPlot("t", "", axes))) {
         EXPECT_TRUE(std::any_of(columns.begin(), columns.end(), [&](const TraceColumn& c) {
             return c.name == name;

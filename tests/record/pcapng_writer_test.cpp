@@ -3,7 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <takt/record/pcapng_writer.hpp>
+#include <thread>
+#include <vector>
 
 #include "temporary_file.hpp"
 
@@ -93,6 +96,35 @@ TEST(PcapngWriter, KeepsPacketsWholeOverTheEndOfItsBuffer) {
     for (std::uint8_t i = 0; i < 50; ++i) {
         const auto expected = frame(60 + i % 7, i);
         EXPECT_EQ(bytes.substr(blocks[i + 2U].at + 28, expected.size()),
+                  std::string(expected.begin(), expected.end()));
+    }
+}
+
+TEST(PcapngWriter, TakesPacketsFromAnotherThread) {
+    const test::TemporaryFile temporary{".pcapng"};
+    OutputFile file{temporary.path()};
+    PcapngWriter writer{file, "", 1000};
+    constexpr std::uint64_t Packets = 5000;
+    std::thread producer{[&] {
+        for (std::uint64_t i = 0; i < Packets;) {
+            const auto bytes = frame(60 + i % 50, static_cast<std::uint8_t>(i));
+            if (writer.packet(Direction::Outbound, core::HostTime{}, bytes)) {
+                ++i;
+            } else {
+                std::this_thread::yield();
+            }
+        }
+    }};
+    while (writer.packets() < Packets) writer.drain();
+    producer.join();
+    writer.drain();
+    EXPECT_TRUE(file.flush());
+    const std::string bytes = temporary.content();
+    const auto blocks = blocksOf(bytes);
+    ASSERT_EQ(blocks.size(), Packets + 2);
+    for (std::uint64_t i = 0; i < Packets; ++i) {
+        const auto expected = frame(60 + i % 50, static_cast<std::uint8_t>(i));
+        ASSERT_EQ(bytes.substr(blocks[i + 2].at + 28, expected.size()),
                   std::string(expected.begin(), expected.end()));
     }
 }

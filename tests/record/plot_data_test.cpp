@@ -7,10 +7,10 @@
 namespace takt::record {
 namespace {
 
-const std::vector<TraceColumn> Columns{{"t_ns", ColumnKind::Integer, {}},
+const std::vector<TraceColumn> columns{{"t_ns", ColumnKind::Integer, {}},
                                        {"v", ColumnKind::Real, {}},
                                        {"s", ColumnKind::Text, {"A", "B"}}};
-const std::vector<std::string> Wanted{"v", "s"};
+const std::vector<std::string> wantedColumns{"v", "s"};
 
 void take(PlotData& data, std::int64_t ms, double value, std::int64_t state = 0) {
     const TraceCell row[] = {TraceCell{.integer = ms * 1000000}, TraceCell{.real = value},
@@ -19,7 +19,7 @@ void take(PlotData& data, std::int64_t ms, double value, std::int64_t state = 0)
 }
 
 TEST(PlotData, KeepsShortTracesPointByPoint) {
-    PlotData data{Columns, "t_ns", Wanted, 8};
+    PlotData data{columns, "t_ns", wantedColumns, 8};
     for (int i = 0; i < 5; ++i) take(data, i, i * 2.0);
     const auto curve = data.curve("v");
     ASSERT_EQ(curve.size(), 5U);
@@ -29,7 +29,7 @@ TEST(PlotData, KeepsShortTracesPointByPoint) {
 }
 
 TEST(PlotData, NeverHoldsMoreBinsThanAskedFor) {
-    PlotData data{Columns, "t_ns", Wanted, 8};
+    PlotData data{columns, "t_ns", wantedColumns, 8};
     for (int i = 0; i < 1000; ++i) {
         take(data, i, i);
         ASSERT_LE(data.curve("v").size(), 8U);
@@ -39,7 +39,7 @@ TEST(PlotData, NeverHoldsMoreBinsThanAskedFor) {
 
 TEST(PlotData, NeverLosesAPeakOfOneRow) {
     for (int peak = 0; peak < 300; peak += 7) {
-        PlotData data{Columns, "t_ns", Wanted, 10};
+        PlotData data{columns, "t_ns", wantedColumns, 10};
         for (int i = 0; i < 300; ++i) take(data, i, i == peak ? 99.0 : 1.0);
         double high = 0.0;
         for (const PlotBin& bin : data.curve("v")) high = std::max(high, bin.high);
@@ -48,7 +48,7 @@ TEST(PlotData, NeverLosesAPeakOfOneRow) {
 }
 
 TEST(PlotData, BinsCoverTheRowsWithoutGapOrOverlap) {
-    PlotData data{Columns, "t_ns", Wanted, 7};
+    PlotData data{columns, "t_ns", wantedColumns, 7};
     for (int i = 0; i < 500; ++i) take(data, i, i);
     const auto curve = data.curve("v");
     for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
@@ -60,7 +60,7 @@ TEST(PlotData, BinsCoverTheRowsWithoutGapOrOverlap) {
 }
 
 TEST(PlotData, RemembersWhenTheExtremesWereReached) {
-    PlotData data{Columns, "t_ns", Wanted, 2};
+    PlotData data{columns, "t_ns", wantedColumns, 2};
     take(data, 0, 0.0);
     take(data, 1, 5.0);
     take(data, 2, 5.0);
@@ -72,7 +72,7 @@ TEST(PlotData, RemembersWhenTheExtremesWereReached) {
 }
 
 TEST(PlotData, LeavesOutValuesThatAreNoNumbers) {
-    PlotData data{Columns, "t_ns", Wanted, 2};
+    PlotData data{columns, "t_ns", wantedColumns, 2};
     take(data, 0, std::numeric_limits<double>::quiet_NaN());
     take(data, 1, 3.0);
     take(data, 2, 4.0);
@@ -83,7 +83,7 @@ TEST(PlotData, LeavesOutValuesThatAreNoNumbers) {
 }
 
 TEST(PlotData, KeepsStatesAsRuns) {
-    PlotData data{Columns, "t_ns", Wanted, 4};
+    PlotData data{columns, "t_ns", wantedColumns, 4};
     for (int i = 0; i < 100; ++i) take(data, i, 0.0, i >= 40 && i < 41 ? 1 : 0);
     const auto runs = data.runs("s");
     ASSERT_EQ(runs.size(), 3U);
@@ -93,25 +93,25 @@ TEST(PlotData, KeepsStatesAsRuns) {
 }
 
 TEST(PlotData, BoundsTheRunsOfAFlickeringState) {
-    PlotData data{Columns, "t_ns", Wanted, 4};
+    PlotData data{columns, "t_ns", wantedColumns, 4};
     for (int i = 0; i < 100000; ++i) take(data, i, 0.0, i % 2);
     EXPECT_LE(data.runs("s").size(), 8192U);
-    PlotData still{Columns, "t_ns", Wanted, 4};
+    PlotData still{columns, "t_ns", wantedColumns, 4};
     for (int i = 0; i < 20000; ++i) take(still, 0, 0.0, i % 2);
     EXPECT_LE(still.runs("s").size(), 8192U);
 }
 
 TEST(PlotData, GivesNothingForAColumnItDoesNotKeep) {
     const std::vector<std::string> wanted{"v", "missing"};
-    const PlotData data{Columns, "t_ns", wanted, 4};
+    const PlotData data{columns, "t_ns", wanted, 4};
     EXPECT_TRUE(data.curve("missing").empty());
     EXPECT_TRUE(data.runs("s").empty());
     EXPECT_TRUE(data.names("s").empty());
 }
 
 TEST(PlotData, RefusesATraceWithoutTime) {
-    EXPECT_THROW(PlotData(Columns, "time", Wanted, 4), std::invalid_argument);
-    EXPECT_THROW(PlotData(Columns, "v", Wanted, 4), std::invalid_argument);
+    EXPECT_THROW(PlotData(columns, "time", wantedColumns, 4), std::invalid_argument);
+    EXPECT_THROW(PlotData(columns, "v", wantedColumns, 4), std::invalid_argument);
 }
 
 }  // namespace

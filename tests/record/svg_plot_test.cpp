@@ -9,13 +9,13 @@
 namespace takt::record {
 namespace {
 
-const std::vector<std::string> StateNames{"Disabled", "Standstill", "Homing", "DiscreteMotion"};
+const std::vector<std::string> stateNames{"Disabled", "Standstill", "Homing", "DiscreteMotion"};
 
 /// X goes to and fro on a smooth path while Y follows half a period later.
 std::string drawn(int rows, std::string_view title = "gantry") {
     const std::vector<MotionAxis> axes{{"X", "mm"}, {"Y", "mm"}};
     const PlotSpec spec = motionPlot(title, "3 axes on the twin, 1 ms", axes);
-    TraceRecorder trace{motionColumns(axes, StateNames), 16};
+    TraceRecorder trace{motionColumns(axes, stateNames), 16};
     PlotData data{trace.columns(), "t_ns", columnsOf(spec)};
     TraceSink* sinks[] = {&data};
     for (int k = 0; k < rows; ++k) {

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <takt/record/trace.hpp>
+#include <thread>
 #include <vector>
 
 namespace takt::record {
@@ -76,6 +79,31 @@ TEST(TraceRecorder, FeedsEverySink) {
     trace.drain(sinks);
     EXPECT_EQ(first.rows, second.rows);
     EXPECT_EQ(first.rows.size(), 1U);
+}
+
+TEST(TraceRecorder, HandsRowsFromOneThreadToAnother) {
+    constexpr std::int64_t Rows = 20000;
+    TraceRecorder trace{oneInteger(), 7};
+    std::thread producer{[&] {
+        for (std::int64_t i = 0; i < Rows;) {
+            const std::uint64_t before = trace.dropped();
+            writeRow(trace, i);
+            if (trace.dropped() == before) {
+                ++i;
+            } else {
+                std::this_thread::yield();
+            }
+        }
+    }};
+    Collector collector;
+    TraceSink* sinks[] = {&collector};
+    while (collector.rows.size() < Rows) {
+        if (trace.drain(sinks) == 0) std::this_thread::yield();
+    }
+    producer.join();
+    std::vector<std::int64_t> expected(Rows);
+    std::iota(expected.begin(), expected.end(), 0);
+    EXPECT_EQ(collector.rows, expected);
 }
 
 TEST(TraceRecorder, RefusesToHaveNoColumnsOrNoRoom) {

@@ -42,6 +42,7 @@ struct SupervisionParams {
     std::uint32_t driveDelayCycles{1};        ///< cycles between target used and actual reported, beyond the bus
     core::Duration enableTimeout{std::chrono::seconds{3}};
     core::Duration resetTimeout{std::chrono::seconds{2}};
+    std::uint32_t lostCycles{3};              ///< bad cycles in a row that are tolerated, 1 to 10
 };
 
 /// How the axis finds its reference, by the drive's own procedure (mode 6).

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <takt/axis/axis_params.hpp>
 #include <takt/fieldbus/fieldbus_params.hpp>
 #include <takt/program/program_params.hpp>
 #include <takt/scheduler/scheduler_params.hpp>
 #include <takt/twin/twin_params.hpp>
+#include <takt/wire/device_description.hpp>
 #include <vector>
 
 namespace takt::config {

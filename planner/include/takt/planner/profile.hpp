@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-
 #include <takt/core/result.hpp>
 #include <takt/core/units.hpp>
 
@@ -37,22 +36,24 @@ struct Target {
 };
 
 enum class PlanError : std::uint8_t {
-    NotFinite,          ///< a number of state, target or limits is NaN or infinite
-    InvalidLimits,      ///< a limit is zero or has the wrong sign
-    TargetNotViable,    ///< target velocity or acceleration outside the limits, or not to be held within them
-    NoSolution,         ///< numerically without an answer; never for a viable problem
+    NotFinite,        ///< a number of state, target or limits is NaN or infinite
+    InvalidLimits,    ///< a limit is zero or has the wrong sign
+    TargetNotViable,  ///< target velocity or acceleration outside the limits, or not to be held
+                      ///< within them
+    NoSolution,       ///< numerically without an answer; never for a viable problem
 };
 
 /// A piece of constant jerk. It begins at `start` of the profile with the state `from`.
 struct Segment {
     core::Seconds start;
+    core::Seconds duration;
     State from;
     core::Jerk jerk;
 };
 
-/// Motion as up to `Capacity` pieces of constant jerk. Before its beginning a profile is its first state;
-/// after its end it goes on with the target's velocity and acceleration (a target at rest stays).
-/// Trivially copyable, no heap.
+/// Motion as up to `Capacity` pieces of constant jerk. Before its beginning a profile is its first
+/// state; after its end it goes on with the target's velocity and acceleration (a target at rest
+/// stays). Trivially copyable, no heap.
 class Profile {
 public:
     static constexpr std::size_t Capacity = 20;
@@ -74,13 +75,13 @@ private:
     State end_{};
 };
 
-/// rt. The fastest motion from `from` to `target` within `limits`. A start outside the limits is brought
-/// inside first. Bounded time, no allocation; nothing is kept between calls.
+/// rt. The fastest motion from `from` to `target` within `limits`. A start outside the limits is
+/// brought inside first. Bounded time, no allocation; nothing is kept between calls.
 [[nodiscard]] core::Result<Profile, PlanError> plan(const State& from, const Target& target,
                                                     const Limits& limits) noexcept;
 
-/// rt. The state at `time` after the beginning; exactly the target at and after the end of a profile
-/// whose target is at rest.
+/// rt. The state at `time` after the beginning; exactly the target at and after the end of a
+/// profile whose target is at rest.
 [[nodiscard]] State sample(const Profile& profile, core::Seconds time) noexcept;
 
 /// rt. The shortest way to standstill: velocity and acceleration zero.

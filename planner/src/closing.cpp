@@ -1,0 +1,50 @@
+#include "closing.hpp"
+
+#include "double_double.hpp"
+
+namespace takt::planner::detail {
+
+namespace {
+
+struct Cruise {
+    std::size_t index;
+    double velocity;
+    double time;
+};
+
+/// The longest piece at constant velocity.
+Cruise longestCruise(const Problem& p, const Pieces& pieces) noexcept {
+    Cruise best{0, 0.0, 0.0};
+    double v = p.v0;
+    double a = p.a0;
+    const double still = 1e-9 * std::max(p.amax, -p.amin);
+    for (std::size_t i = 0; i < pieces.size; ++i) {
+        const double t = pieces.time[i];
+        const double j = pieces.value[i];
+        if (j == 0.0 && std::fabs(a) <= still && t > best.time) best = {i, v, t};
+        v += t * (a + 0.5 * t * j);
+        a += t * j;
+    }
+    return best;
+}
+
+}  // namespace
+
+bool closeOnTarget(const Problem& problem, Pieces& pieces) noexcept {
+    const Cruise cruise = longestCruise(problem, pieces);
+    // What an ulp of acceleration does on the way, against 1e-13 of the way.
+    const double limit = std::max(problem.amax, -problem.amin);
+    if (!(kEps * limit * cruise.time > 1e-13 * std::fabs(cruise.velocity))) return false;
+    ExactState state;
+    state.v.high = problem.v0;
+    state.a.high = problem.a0;
+    for (std::size_t i = 0; i < pieces.size; ++i) {
+        state.advance(pieces.time[i], pieces.value[i]);
+    }
+    const double miss = (state.p + DoubleDouble{-problem.distance, 0.0}).value();
+    const double change = miss / cruise.velocity;
+    if (std::fabs(change) <= 1e-6 * cruise.time) pieces.time[cruise.index] -= change;
+    return true;
+}
+
+}  // namespace takt::planner::detail

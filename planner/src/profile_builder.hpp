@@ -1,0 +1,23 @@
+#pragma once
+
+#include <takt/planner/profile.hpp>
+
+#include "problem.hpp"
+
+namespace takt::planner {
+
+/// Turns pieces into a profile. Positions are summed from zero and moved to the start in the end.
+class ProfileBuilder {
+public:
+    /// Third order: the values of the pieces are jerks.
+    static void withJerks(const State& from, const detail::Pieces& pieces, Profile& out) noexcept;
+    /// The same without the rounding of the sums, for pieces of very different lengths.
+    static void withJerksExactly(const State& from, const detail::Pieces& pieces,
+                                 Profile& out) noexcept;
+    /// Sets the state that is reached, and sums up the pieces after the longest one backwards from
+    /// it: near its end the profile is as exact as the target, so that it can be planned again from
+    /// there. What rounding has left is in the middle.
+    static void closeOn(const State& end, Profile& profile) noexcept;
+};
+
+}  // namespace takt::planner

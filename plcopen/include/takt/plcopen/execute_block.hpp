@@ -1,0 +1,61 @@
+#pragma once
+
+#include <takt/axis/axis_port.hpp>
+#include <takt/axis/command.hpp>
+#include <takt/axis/error.hpp>
+#include <takt/plcopen/enums.hpp>
+
+namespace takt::plcopen {
+
+/// What every Execute-type block has in common, written once: rising edge, exclusivity of the
+/// outputs, the one-cycle rule after an early fall of Execute, immediate answer in the call of the
+/// edge.
+class ExecuteBlock {
+public:
+    ExecuteBlock(const ExecuteBlock&) = delete;
+    ExecuteBlock& operator=(const ExecuteBlock&) = delete;
+
+    bool Execute{false};  ///< in: a rising edge starts the command and samples all inputs
+
+    bool Busy{false};   ///< out: accepted and not yet finished
+    bool Error{false};  ///< out: the command failed or was refused, see ErrorID
+    axis::ErrorId ErrorID{axis::ErrorId::None};
+
+protected:
+    ExecuteBlock() = default;
+    ~ExecuteBlock() = default;
+
+    /// rt. One call of the block. `request` is what a rising edge commands.
+    /// \return where the command stands as this call shows it; Unknown = nothing to show
+    axis::CommandPhase run(axis::AxisRef axis, const axis::Command& request) noexcept;
+
+    [[nodiscard]] axis::CommandId command() const noexcept { return id_; }
+    /// Execute was TRUE in the call before.
+    [[nodiscard]] bool wasExecuted() const noexcept { return lastExecute_; }
+
+private:
+    void start(const axis::AxisRef& axis, const axis::Command& request) noexcept;
+    void follow() noexcept;
+
+    axis::AxisRef axis_{};
+    axis::CommandId id_{axis::CommandId::None};
+    axis::CommandStatus status_{};
+    bool lastExecute_{false};
+    bool shown_{false};  ///< the end has been shown in a call
+};
+
+/// An Execute-type block that moves the axis.
+class MotionBlock : public ExecuteBlock {
+public:
+    bool Active{false};          ///< out: this instance controls the axis
+    bool CommandAborted{false};  ///< out: another command took the axis
+
+protected:
+    MotionBlock() = default;
+    ~MotionBlock() = default;
+
+    /// rt. As ExecuteBlock::run, and sets Active and CommandAborted.
+    axis::CommandPhase runMotion(axis::AxisRef axis, const axis::Command& request) noexcept;
+};
+
+}  // namespace takt::plcopen

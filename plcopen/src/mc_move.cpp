@@ -1,0 +1,35 @@
+#include <takt/plcopen/mc_move.hpp>
+
+namespace takt::plcopen {
+
+axis::Command MoveBlock::request(axis::CommandKind kind) const noexcept {
+    axis::Command command;
+    command.kind = kind;
+    command.bufferMode = toAxis(BufferMode);
+    command.dynamics = {core::Velocity{Velocity}, core::Acceleration{Acceleration},
+                        core::Acceleration{Deceleration}, core::Jerk{Jerk}};
+    return command;
+}
+
+void MC_MoveAbsolute::operator()(axis::AxisRef axis) noexcept {
+    axis::Command command = request(axis::CommandKind::MoveAbsolute);
+    command.position = core::Position{Position};
+    command.direction = toAxis(Direction);
+    Done = runMotion(axis, command) == axis::CommandPhase::Done;
+}
+
+void MC_MoveRelative::operator()(axis::AxisRef axis) noexcept {
+    axis::Command command = request(axis::CommandKind::MoveRelative);
+    command.distance = core::Distance{Distance};
+    Done = runMotion(axis, command) == axis::CommandPhase::Done;
+}
+
+void MC_MoveVelocity::operator()(axis::AxisRef axis) noexcept {
+    axis::Command request = this->request(axis::CommandKind::MoveVelocity);
+    request.direction = toAxis(Direction);
+    const axis::CommandPhase phase = runMotion(axis, request);
+    InVelocity = phase == axis::CommandPhase::Active && axis.valid() &&
+                 axis.port().view().active == command() && axis.port().view().inVelocity;
+}
+
+}  // namespace takt::plcopen

@@ -1,0 +1,98 @@
+#include <takt/cli/command_line.hpp>
+
+#include <unistd.h>
+
+#include <climits>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include <takt/daemon/run.hpp>
+#include <takt/program/entry.hpp>
+
+namespace takt::cli {
+
+namespace {
+
+/// "10s", "500 ms": a length of time with its unit.
+core::Duration parseLength(const std::string& text) {
+    static const std::map<std::string, double> units{{"ms", 1e6}, {"s", 1e9}, {"min", 60e9}, {"h", 3600e9}};
+    std::size_t end = 0;
+    double value = 0;
+    try {
+        value = std::stod(text, &end);
+    } catch (const std::exception&) {
+        end = 0;
+    }
+    const std::size_t unitAt = text.find_first_not_of(' ', end);
+    const auto unit = unitAt == std::string::npos ? units.end() : units.find(text.substr(unitAt));
+    if (end == 0 || unit == units.end() || !(value > 0) || value * unit->second > 9e18) {
+        throw CLI::ValidationError("--for", "'" + text + "' is not a length of time; use for example 10s, 500ms, 5min");
+    }
+    return core::Duration{static_cast<std::int64_t>(value * unit->second)};
+}
+
+std::filesystem::path executableFolder() {
+    std::error_code error;
+    const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+    return error ? std::filesystem::path{} : self.parent_path();
+}
+
+/// What `run` needs beyond the options struct until all of the line has been read.
+struct RunArguments {
+    daemon::RunOptions options;
+    std::string length;
+    bool sim{false};
+};
+
+void addRun(CLI::App& app, RunArguments& run) {
+    auto* command = app.add_subcommand("run", "run a machine until its programs have finished");
+    auto& options = run.options;
+    command->add_option("machine", options.machine, "machine.xml")->required();
+    command->add_flag("--sim", run.sim, "on the simulated machine (the only one without an interface)");
+    command->add_flag("--fast", options.fast, "simulated, as fast as the computer can; implies --sim");
+    command->add_option("--program", options.programLibrary, "run this program library instead of those in the machine file");
+    command->add_flag("--manual", options.manual, "run without programs");
+    command->add_option("--for", run.length, "stop after this time in operation, e.g. 10s");
+    command->add_option("--trace", options.trace, "write every cycle to this CSV file");
+    command->add_option("--plot", options.plot, "draw the run into this SVG file");
+    command->add_option("--pcap", options.capture, "write every frame to this pcapng file");
+    command->add_flag("--quiet", options.quiet, "print errors only");
+}
+
+void addCheck(CLI::App& app, daemon::RunOptions& options) {
+    auto* command = app.add_subcommand("check", "check a machine file and say what its network needs");
+    command->add_option("machine", options.machine, "machine.xml")->required();
+}
+
+}  // namespace
+
+int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> programs) {
+    CLI::App app{"takt: a motion controller runtime for EtherCAT servo drives"};
+    app.set_version_flag("--version", std::string{"takt "} + program::Version);
+    app.require_subcommand(1);
+    app.footer("exit codes of run: 0 done, 1 configuration refused, 2 could not run, 3 axis or program failed,\n"
+               "  4 program abandoned, 5 stop time-out, 128+n signal n; of check: 0 good, 1 errors, 2 could not run");
+
+    RunArguments runArguments;
+    daemon::RunOptions checkOptions;
+    addRun(app, runArguments);
+    addCheck(app, checkOptions);
+    try {
+        app.parse(argc, argv);
+        if (!runArguments.length.empty()) runArguments.options.length = parseLength(runArguments.length);
+    } catch (const CLI::ParseError& error) {
+        // CLI11 has codes of its own; a wrong command line is a refused configuration.
+        return app.exit(error) == 0 ? 0 : static_cast<int>(daemon::ExitCode::Refused);
+    }
+
+    if (app.got_subcommand("check")) {
+        checkOptions.searchDirs.push_back(executableFolder());
+        return daemon::check(checkOptions);
+    }
+    runArguments.options.searchDirs.push_back(executableFolder());
+    return daemon::run(runArguments.options, std::move(programs));
+}
+
+}  // namespace takt::cli

@@ -1,0 +1,1 @@
+// The library is made of the rooms; a target needs one source of its own.

@@ -1,0 +1,3 @@
+#include <takt/cli/command_line.hpp>
+
+int main(int argc, char** argv) { return takt::cli::commandLine(argc, argv); }

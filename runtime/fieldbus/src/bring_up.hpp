@@ -1,0 +1,76 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <takt/fieldbus/ethercat/bring_up_problem.hpp>
+#include <takt/fieldbus/fieldbus_params.hpp>
+#include <vector>
+
+#include "conversation.hpp"
+#include "device_scan.hpp"
+#include "reference_clock.hpp"
+#include "slave_agent.hpp"
+
+namespace takt::fieldbus::ethercat {
+
+/// Station address of a slave.
+[[nodiscard]] constexpr std::uint16_t stationOf(std::size_t slave) noexcept {
+    return static_cast<std::uint16_t>(1001 + slave);
+}
+
+/// Everything between a silent wire and a network in PREOP that is ready for the cyclic phase:
+/// count, reset, addresses, identity, clocks, objects, SyncManagers, FMMUs, SYNC0. Runs outside the
+/// cycle.
+class BringUp {
+public:
+    using Progress = std::function<void(std::string_view)>;
+
+    struct Parts {
+        const NetworkParams& network;
+        const LogicalLayout& layout;
+        AcyclicSlice& slice;
+        std::span<AcyclicMachine* const> machines;
+        std::vector<std::unique_ptr<SlaveAgent>>& agents;
+        std::vector<SlaveScripts>& scripts;
+        ReferenceClock& reference;
+    };
+
+    BringUp(const Parts& parts, Conversation& talk, const Progress& progress);
+
+    /// \return all problems found before the step that could not be left; empty = ready
+    std::vector<BringUpProblem> run();
+    /// The slave whose clock leads; meaningful when the reference clock is present.
+    [[nodiscard]] std::size_t referenceSlave() const noexcept { return referenceSlave_; }
+
+private:
+    void say(std::string_view text) const;
+    void blameNetwork(std::string text);
+    void blame(std::size_t slave, std::string_view text);
+
+    void checkParams();
+    void countDevices();
+    void resetDevices();
+    void assignAddresses();
+    void scan();
+    void compareDevices();
+    void measureClocks();
+    void writeClocks(core::HostTime latched, std::span<const std::uint64_t> local,
+                     std::span<const std::uint32_t> delays);
+    void configure();
+    void settleClocks();
+    void armSync();
+    void runScript(Script SlaveScripts::*script);
+    [[nodiscard]] bool dcWanted() const;
+
+    Parts parts_;
+    Conversation& talk_;
+    const Progress& progress_;
+    std::vector<BringUpProblem> problems_;
+    std::vector<ScannedDevice> found_;
+    std::size_t count_{0};
+    std::size_t referenceSlave_{0};
+};
+
+}  // namespace takt::fieldbus::ethercat

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <takt/core/time.hpp>
+#include <takt/wire/frame.hpp>
+#include <takt/wire/link.hpp>
+#include <vector>
+
+namespace takt::fieldbus::ethercat {
+
+/// What was received beside the expected replies; counts since the last reset.
+struct FrameCounters {
+    std::uint64_t sent{0};
+    std::uint64_t lost{0};        ///< no reply by the deadline
+    std::uint64_t late{0};        ///< reply to a frame of an earlier cycle
+    std::uint64_t duplicate{0};   ///< a second reply to the same frame
+    std::uint64_t malformed{0};   ///< length, command, index or address contradict what was sent
+    std::uint64_t foreign{0};     ///< not EtherCAT, or seen by no device
+    std::uint64_t sendFailed{0};  ///< the link refused the frames
+};
+
+/// Number of a datagram inside its FrameSet, counted from begin().
+using DatagramId = std::uint16_t;
+
+struct Reply {
+    bool arrived{false};
+    std::uint16_t workingCounter{0};
+    std::span<const std::uint8_t> data{};
+
+    [[nodiscard]] bool served() const noexcept { return arrived && workingCounter != 0; }
+};
+
+/// The frames of one exchange and their replies: put together, sent with one call, received with
+/// one call, checked against what was sent. All datagrams of a frame carry the frame's own index.
+///
+///     frames.begin(); frames.openFrame();
+///     auto id = frames.append(Command::Brd, 0, reg::AlStatus, 2);
+///     frames.finish();
+///     frames.send(link); frames.receive(link, deadline);
+///     frames.reply(id)…
+class FrameSet {
+public:
+    /// Allocates everything it will ever need.
+    FrameSet(std::size_t maxFrames, std::size_t maxDatagrams);
+
+    /// rt. Forgets the frames and replies of the last exchange.
+    void begin() noexcept;
+    /// rt. \return false when all frames are in use
+    bool openFrame() noexcept;
+    /// rt. Data bytes that a further datagram may have; 0 when no datagram can be added.
+    [[nodiscard]] std::size_t room() const noexcept;
+    [[nodiscard]] bool empty() const noexcept { return datagrams_.empty(); }
+
+    /// rt. Data are zeros until filled through `data`. \pre length <= room()
+    DatagramId append(wire::Command command, std::uint16_t adp, std::uint16_t ado,
+                      std::uint16_t length) noexcept;
+    /// rt. \pre length <= room()
+    DatagramId appendLogical(wire::Command command, std::uint32_t address,
+                             std::uint16_t length) noexcept;
+    /// rt. Data of a datagram of the open frame.
+    [[nodiscard]] std::span<std::uint8_t> data(DatagramId id) noexcept;
+    /// rt. Closes the last frame.
+    void finish() noexcept;
+
+    /// rt. Sends all frames with one call.
+    wire::LinkStatus send(wire::Link& link) noexcept;
+    /// rt. Waits for the replies; normally one call, a bounded number more when strays arrive.
+    void receive(wire::Link& link, core::HostTime deadline) noexcept;
+    /// rt. The reply to a datagram; its data are valid until the next begin().
+    [[nodiscard]] Reply reply(DatagramId id) const noexcept;
+
+    /// When the first frame left.
+    [[nodiscard]] core::HostTime sentAt() const noexcept { return frames_.front().stamp; }
+    [[nodiscard]] std::size_t frameCount() const noexcept { return frameCount_; }
+    [[nodiscard]] const FrameCounters& counters() const noexcept { return counters_; }
+    void resetCounters() noexcept { counters_ = {}; }
+
+private:
+    struct Sent {
+        wire::DatagramPlace place;
+        std::uint32_t address{0};
+        wire::Command command{wire::Command::Nop};
+        std::uint8_t frame{0};
+    };
+    enum class Verdict : std::uint8_t { Accepted, Late, Duplicate, Malformed, Foreign };
+
+    DatagramId remember(wire::Command command, std::uint32_t address,
+                        wire::DatagramPlace place) noexcept;
+    [[nodiscard]] std::uint8_t openIndex() const noexcept;
+    [[nodiscard]] Verdict judge(wire::Frame& frame, std::size_t& which) const noexcept;
+    void count(Verdict verdict) noexcept;
+
+    static constexpr std::uint8_t NoReply = 0xFF;
+
+    std::vector<wire::Frame> frames_;
+    std::vector<wire::Frame> slots_;
+    std::vector<std::uint8_t> slotOf_;  ///< for each frame the slot of its reply, or NoReply
+    std::vector<std::uint16_t>
+        firstOf_;  ///< for each frame its first datagram; one more at the end
+    std::vector<Sent> datagrams_;
+    std::optional<wire::FrameWriter> writer_;
+    std::size_t frameCount_{0};
+    std::uint8_t firstIndex_{0};
+    FrameCounters counters_;
+};
+
+}  // namespace takt::fieldbus::ethercat

@@ -1,0 +1,262 @@
+#include <algorithm>
+#include <takt/fieldbus/ethercat/master.hpp>
+#include <takt/wire/byte_io.hpp>
+#include <takt/wire/registers.hpp>
+
+#include "bring_up.hpp"
+#include "messages.hpp"
+#include "network_walk.hpp"
+
+namespace takt::fieldbus::ethercat {
+
+namespace {
+
+constexpr std::size_t MostDatagramsInFrame = 128;
+constexpr std::uint64_t MailboxLookGap = 8;  ///< cycles, for slaves without a mailbox state FMMU
+
+NetworkParams inFrameOrder(NetworkParams network) {
+    std::stable_sort(
+        network.slaves.begin(), network.slaves.end(),
+        [](const SlaveParams& a, const SlaveParams& b) { return a.position < b.position; });
+    return network;
+}
+
+}  // namespace
+
+struct Master::Parts {
+    Parts(const NetworkParams& params, wire::Link& wireLink, core::ClockSource& clockSource);
+
+    void exchange(core::CycleNumber cycle) noexcept;
+    void prepare() noexcept;
+    void takeBus() noexcept;
+    void takeMailboxStates() noexcept;
+    void lookIntoMailboxes() noexcept;
+    void appendExtras() noexcept;
+    [[nodiscard]] bool mapped() const noexcept;
+
+    NetworkParams network;
+    wire::Link& link;
+    core::ClockSource& clock;
+    BusTiming timing;
+    LogicalLayout layout;
+    FrameSet frames;
+    AcyclicSlice slice;
+    std::vector<std::unique_ptr<SlaveAgent>> agents;
+    std::vector<AcyclicMachine*> machines;
+    std::vector<SlaveScripts> scripts;
+    std::vector<std::uint16_t> mailboxSlave;  ///< slave of each mailbox state bit
+    std::vector<std::uint16_t> unmappedMailboxes;
+    ProcessData data;
+    ReferenceClock reference;
+    NetworkWalk walk;
+
+    BusReading reading{};
+    DatagramId statusRead{0};
+    DatagramId mailboxRead{0};
+    core::HostTime now{};
+    std::uint64_t cycles{0};
+    bool prepared{false};
+};
+
+Master::Parts::Parts(const NetworkParams& params, wire::Link& wireLink,
+                     core::ClockSource& clockSource)
+    : network{inFrameOrder(params)},
+      link{wireLink},
+      clock{clockSource},
+      timing{computeTiming(network)},
+      layout{makeLayout(network)},
+      frames{layout.groups.size() + 1, 2 * layout.groups.size() + 3 + MostDatagramsInFrame},
+      slice{network.slaves.size()},
+      data{layout},
+      reference{network.cycle, timing.sync0AfterSend},
+      walk{network, agents, scripts, data} {
+    for (std::size_t i = 0; i < network.slaves.size(); ++i) {
+        agents.push_back(
+            std::make_unique<SlaveAgent>(network.slaves[i], stationOf(i), slice.work(), i));
+        machines.push_back(agents.back().get());
+        scripts.push_back(makeScripts(network, i, layout));
+        if (layout.slaves[i].mailboxBit != NoMailboxBit) {
+            mailboxSlave.push_back(static_cast<std::uint16_t>(i));
+        } else if (mailboxPlace(network.slaves[i])) {
+            unmappedMailboxes.push_back(static_cast<std::uint16_t>(i));
+        }
+    }
+}
+
+/// FMMUs and process data SyncManagers are set up.
+bool Master::Parts::mapped() const noexcept {
+    return walk.state() != NetworkState::Off && walk.state() != NetworkState::Init;
+}
+
+void Master::Parts::prepare() noexcept {
+    frames.begin();
+    for (std::size_t i = 0; i < layout.groups.size(); ++i) {
+        frames.openFrame();
+        if (i == 0 && reference.present()) reference.append(frames);
+        data.append(frames, i);
+        if (i == 0) appendExtras();
+    }
+    slice.fill(frames, machines, timing.acyclicBytes, now);
+    frames.finish();
+    prepared = true;
+}
+
+void Master::Parts::appendExtras() noexcept {
+    if (layout.mailboxBits != 0) {
+        mailboxRead =
+            frames.appendLogical(wire::Command::Lrd, MailboxStateBase, layout.mailboxBytes());
+    }
+    statusRead = frames.append(wire::Command::Brd, 0, wire::reg::AlStatus, 2);
+}
+
+void Master::Parts::exchange(core::CycleNumber cycle) noexcept {
+    if (!prepared) prepare();
+    prepared = false;
+    ++cycles;
+    const wire::LinkStatus status = frames.send(link);
+    now = clock.now();
+    if (status == wire::LinkStatus::Ok) frames.receive(link, now + timing.receiveDeadline);
+    if (reference.present()) reference.take(frames);
+    data.take(frames, walk.supervised());
+    takeBus();
+    slice.deliver(frames, machines, now);
+    takeMailboxStates();
+    walk.step(cycle, now, reading);
+}
+
+void Master::Parts::takeBus() noexcept {
+    const Reply reply = frames.reply(statusRead);
+    reading.statusArrived = reply.arrived;
+    reading.hasReference = reference.present();
+    if (!reply.arrived) return;
+    reading.status = wire::load16(reply.data, 0);
+    reading.statusCounter = reply.workingCounter;
+}
+
+void Master::Parts::takeMailboxStates() noexcept {
+    if (!mapped()) return;
+    lookIntoMailboxes();
+    if (layout.mailboxBits == 0) return;
+    const Reply reply = frames.reply(mailboxRead);
+    if (!reply.served()) return;
+    for (std::size_t byte = 0; byte < reply.data.size(); ++byte) {
+        for (unsigned bits = reply.data[byte]; bits != 0; bits &= bits - 1) {
+            const std::size_t bit = byte * 8 + static_cast<std::size_t>(std::countr_zero(bits));
+            if (bit < mailboxSlave.size()) agents[mailboxSlave[bit]]->mailboxFull();
+        }
+    }
+}
+
+void Master::Parts::lookIntoMailboxes() noexcept {
+    for (std::size_t i = cycles % MailboxLookGap; i < unmappedMailboxes.size();
+         i += MailboxLookGap) {
+        agents[unmappedMailboxes[i]]->lookIntoMailbox();
+    }
+}
+
+Master::Master(const NetworkParams& network, wire::Link& link, core::ClockSource& clock)
+    : parts_{std::make_unique<Parts>(network, link, clock)} {}
+
+Master::~Master() = default;
+
+std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string_view)>& progress) {
+    Parts& parts = *parts_;
+    parts.walk.off();
+    parts.data.reset();
+    Conversation talk{parts.frames, parts.link, parts.clock};
+    BringUp bringUp{{parts.network, parts.layout, parts.slice, parts.machines, parts.agents,
+                     parts.scripts, parts.reference},
+                    talk,
+                    progress};
+    std::vector<BringUpProblem> problems = bringUp.run();
+    if (!problems.empty()) return problems;
+    parts.walk.begin(bringUp.referenceSlave());
+    parts.reading = {};
+    parts.cycles = 0;
+    parts.now = parts.clock.now();
+    parts.prepare();
+    parts.frames.resetCounters();
+    return problems;
+}
+
+core::HostTime Master::firstSend(core::HostTime notBefore) const noexcept {
+    return parts_->reference.gridSend(notBefore);
+}
+
+void Master::exchange(core::CycleNumber cycle) noexcept {
+    parts_->exchange(cycle);
+}
+void Master::prepare() noexcept {
+    parts_->prepare();
+}
+void Master::requestOp() noexcept {
+    parts_->walk.requestOp();
+}
+void Master::requestInit() noexcept {
+    parts_->walk.requestInit();
+}
+void Master::setClockLocked(bool locked) noexcept {
+    parts_->reading.clockLocked = locked;
+}
+NetworkState Master::state() const noexcept {
+    return parts_->walk.state();
+}
+const DcSample& Master::dcSample() const noexcept {
+    return parts_->reference.sample();
+}
+const BusTiming& Master::timing() const noexcept {
+    return parts_->timing;
+}
+core::DeviceImage Master::image(std::size_t slave) noexcept {
+    return parts_->data.image(slave);
+}
+core::ObjectAccess& Master::objects(std::size_t slave) noexcept {
+    return *parts_->agents[slave];
+}
+
+const EmergencyRecord& Master::lastEmergency(std::size_t slave) const noexcept {
+    return parts_->agents[slave]->lastEmergency();
+}
+
+std::uint32_t Master::emergencies(std::size_t slave) const noexcept {
+    return parts_->agents[slave]->emergencies();
+}
+
+CycleCounters Master::counters() const noexcept {
+    const FrameCounters& frames = parts_->frames.counters();
+    CycleCounters all;
+    all.cycles = parts_->cycles;
+    all.framesSent = frames.sent;
+    all.framesLost = frames.lost;
+    all.framesLate = frames.late;
+    all.framesDuplicate = frames.duplicate;
+    all.framesMalformed = frames.malformed;
+    all.framesForeign = frames.foreign;
+    all.sendFailures = frames.sendFailed;
+    for (const GroupCounters& group : parts_->data.groups())
+        all.workingCounterErrors += group.wrong;
+    for (const auto& agent : parts_->agents) all.emergencies += agent->emergencies();
+    return all;
+}
+
+std::span<const GroupCounters> Master::groups() const noexcept {
+    return parts_->data.groups();
+}
+
+std::uint16_t Master::expectedWorkingCounter() const noexcept {
+    std::uint16_t sum = 0;
+    for (const GroupCounters& group : parts_->data.groups()) {
+        sum = static_cast<std::uint16_t>(sum + group.expected);
+    }
+    return sum;
+}
+
+const NetworkProblem& Master::problemRecord() const noexcept {
+    return parts_->walk.problem();
+}
+
+std::string Master::problem() const {
+    return describe(parts_->network, parts_->walk.problem());
+}
+
+}  // namespace takt::fieldbus::ethercat

@@ -1,0 +1,18 @@
+#pragma once
+
+/// The one header of a motion program.
+
+#include <takt/plcopen/plcopen.hpp>
+#include <takt/program/entry.hpp>
+#include <takt/program/program.hpp>
+
+namespace takt {
+
+using axis::AxisRef;
+using program::Inspector;
+using program::Machine;
+using program::Program;
+using program::ProgramState;
+using namespace plcopen;  // NOLINT(google-build-using-namespace): programs write takt::MC_Power
+
+}  // namespace takt

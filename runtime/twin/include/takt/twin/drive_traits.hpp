@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <takt/core/time.hpp>
+
+namespace takt::twin {
+
+/// Unit of velocities and accelerations in a drive's objects.
+enum class MotionUnit : std::uint8_t {
+    Counts,    ///< position units per second (squared)
+    TenthRpm,  ///< 0.1 rpm (per second)
+};
+
+/// Where the home position is once the last homing event was seen.
+enum class HomeReference : std::uint8_t {
+    LatchedEdge,  ///< where the switch or index changed
+    Standstill,   ///< where the motor came to rest after it (index methods: the index)
+};
+
+/// Which of the two homing tables a drive follows.
+enum class HomingTable : std::uint8_t { Cd300e, Cia402 };
+
+/// How a drive differs from others within CiA 402. Every reading that the makers' documents leave
+/// open is a named member, so that a machine builder who has measured his drive can switch it.
+struct DriveTraits {
+    std::string_view name;
+
+    // Bus
+    std::span<const core::Duration> allowedCycles{};  ///< empty: any multiple of cycleStep
+    core::Duration cycleStep{0};                      ///< 0 = any cycle
+    core::Duration longestCycle{0};                   ///< 0 = no limit
+    std::uint8_t maxPdoEntries{16};
+    std::uint16_t maxPdoBytes{256};
+    std::uint8_t maxAssignedPdos{4};
+    bool detailedRangeAborts{true};  ///< 0609 0031h/0032h instead of 0609 0030h
+    bool emergencies{false};         ///< sends emergency messages
+    std::uint32_t lostTargetLimit{
+        0};  ///< cycles without new outputs before a fault; 0 = watchdog only
+    bool lockFollowsSyncType{
+        true};  ///< 1C32h:01 is rewritten to what 0x0981 says at PREOP → SAFEOP
+
+    // Faults
+    std::uint16_t followingErrorCode{0x8611};  ///< 603Fh
+    std::uint16_t followingErrorPanel{0};      ///< number on the drive's own display
+    std::uint16_t communicationCode{0x8700};
+    std::uint16_t communicationPanel{0};
+    std::uint16_t panelObject{0};            ///< object that shows it, 0 = none
+    std::uint8_t errorRegisterMotion{0x01};  ///< 1001h for drive faults
+    std::uint8_t errorRegisterBus{0x10};     ///< 1001h for bus faults
+
+    // Stops. −1: the object does not exist and the number behind it applies.
+    bool stopOptions{true};            ///< 605Ah, 605Bh, 605Ch exist
+    std::int16_t quickStopDefault{2};  ///< 605Ah
+    std::int16_t shutdownDefault{0};   ///< 605Bh
+    std::int16_t disableDefault{1};    ///< 605Ch
+    bool quickStopOneUsesProfileDeceleration{true};
+    bool haltInCsp{false};  ///< controlword bit 8 stops the axis in CSP
+
+    // Statusword
+    bool dcLockedInBit8{false};
+    bool zeroSpeedInBit14{false};
+    bool homedInBit15{false};
+
+    // Position and homing
+    MotionUnit unit{MotionUnit::Counts};
+    bool truncatesPositions{false};  ///< electronic gear cuts towards zero instead of rounding
+    HomingTable homingTable{HomingTable::Cia402};
+    HomeReference homeReference{HomeReference::LatchedEdge};
+    bool movesToHomeOffset{false};       ///< 6099h:05 = 0 moves by 607Ch and zeroes there
+    std::int8_t homeOffsetSign{-1};      ///< the home point reads sign · 607Ch
+    bool homingMethodZeroAllowed{true};  ///< 6098h = 0 may be written
+
+    // Timing and power stage
+    core::Duration bootTime{std::chrono::milliseconds{50}};
+    core::Duration enableTime{std::chrono::milliseconds{5}};  ///< Switched on → Operation enabled
+    double ratedTorque{1.27};                                 ///< Nm, a 400 W motor
+    double torqueLimit{3.0};                                  ///< times rated
+    std::uint32_t followingWindow{0xFFFFFFFF};  ///< 6065h where the description has no default
+    std::uint16_t followingTimeout{0};          ///< 6066h, ms
+    std::int8_t powerUpMode{0};                 ///< 6060h
+
+    /// rt. Whether the drive accepts this SYNC0 cycle.
+    [[nodiscard]] bool allowsCycle(core::Duration cycle) const noexcept;
+    /// rt. Modes of operation that the simulated drive implements.
+    [[nodiscard]] bool supportsMode(std::int8_t mode) const noexcept;
+    /// rt. Values that 6098h takes.
+    [[nodiscard]] bool supportsHoming(std::int8_t method) const noexcept;
+};
+
+/// "cd300e", "ra"; anything else is a generic CiA 402 drive.
+[[nodiscard]] const DriveTraits& driveTraits(std::string_view profile) noexcept;
+
+}  // namespace takt::twin

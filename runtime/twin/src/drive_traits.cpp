@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <array>
+#include <takt/core/cia402.hpp>
+#include <takt/twin/drive_traits.hpp>
+
+#include "homing_sequence.hpp"
+
+namespace takt::twin {
+
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+constexpr std::array<core::Duration, 7> Cd300eCycles{
+    microseconds{125}, microseconds{250}, microseconds{500}, milliseconds{1},
+    milliseconds{2},   milliseconds{4},   milliseconds{8},
+};
+
+constexpr DriveTraits makeCd300e() {
+    DriveTraits traits;
+    traits.name = "cd300e";
+    traits.allowedCycles = Cd300eCycles;
+    traits.maxPdoEntries = 8;
+    traits.lockFollowsSyncType = false;
+    // The manual names coasting as default of all three stop options, and 6084h as the ramp of
+    // option 1.
+    traits.quickStopDefault = 0;
+    traits.shutdownDefault = 0;
+    traits.disableDefault = 0;
+    traits.homedInBit15 = true;
+    traits.truncatesPositions = true;
+    traits.homingTable = HomingTable::Cd300e;
+    traits.homeReference = HomeReference::Standstill;
+    traits.movesToHomeOffset = true;
+    traits.followingWindow = 50000;
+    traits.followingTimeout = 10;
+    traits.powerUpMode = 1;
+    return traits;
+}
+
+constexpr DriveTraits makeRa() {
+    DriveTraits traits;
+    traits.name = "ra";
+    traits.cycleStep = microseconds{125};
+    traits.longestCycle = milliseconds{16};  // 125 µs · n, n = 1 … 128
+    traits.maxPdoEntries = 16;
+    traits.maxPdoBytes = 32;
+    traits.maxAssignedPdos = 1;
+    traits.detailedRangeAborts = false;
+    traits.emergencies = true;
+    traits.lostTargetLimit = 4;  // E.815
+    traits.followingErrorPanel = 0x600;
+    traits.communicationPanel = 0x815;
+    traits.panelObject = 0x3EE1;
+    traits.errorRegisterMotion = 0x80;
+    traits.stopOptions = false;
+    // Transition 16 is listed, so Quick stop active is a resting state after a ramp by 6085h.
+    traits.quickStopDefault = 6;
+    traits.disableDefault = 0;
+    traits.haltInCsp = true;
+    traits.dcLockedInBit8 = true;
+    traits.zeroSpeedInBit14 = true;
+    traits.unit = MotionUnit::TenthRpm;
+    traits.homingMethodZeroAllowed = false;
+    traits.followingWindow = 3840000;
+    return traits;
+}
+
+constexpr DriveTraits makeGeneric() {
+    DriveTraits traits;
+    traits.name = "generic";
+    return traits;
+}
+
+constexpr DriveTraits Cd300e = makeCd300e();
+constexpr DriveTraits Ra = makeRa();
+constexpr DriveTraits Generic = makeGeneric();
+
+}  // namespace
+
+bool DriveTraits::allowsCycle(core::Duration cycle) const noexcept {
+    if (cycle <= core::Duration{0}) return false;
+    if (longestCycle != core::Duration{0} && cycle > longestCycle) return false;
+    if (!allowedCycles.empty()) {
+        return std::find(allowedCycles.begin(), allowedCycles.end(), cycle) != allowedCycles.end();
+    }
+    return cycleStep == core::Duration{0} || cycle.count() % cycleStep.count() == 0;
+}
+
+bool DriveTraits::supportsMode(std::int8_t mode) const noexcept {
+    using core::cia402::Mode;
+    return mode == static_cast<std::int8_t>(Mode::CyclicSynchronousPosition) ||
+           mode == static_cast<std::int8_t>(Mode::Homing);
+}
+
+bool DriveTraits::supportsHoming(std::int8_t method) const noexcept {
+    return (method == 0 && homingMethodZeroAllowed) || homingSupported(homingTable, method);
+}
+
+const DriveTraits& driveTraits(std::string_view profile) noexcept {
+    if (profile == Cd300e.name) return Cd300e;
+    if (profile == Ra.name) return Ra;
+    return Generic;
+}
+
+}  // namespace takt::twin

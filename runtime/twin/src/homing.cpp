@@ -1,0 +1,194 @@
+#include "homing.hpp"
+
+#include <cmath>
+
+namespace takt::twin {
+
+namespace {
+
+double distance(double a, double b) noexcept {
+    return a > b ? a - b : b - a;
+}
+
+/// The edge of a switch that lies nearer: what a latch in hardware records.
+double edgeNear(const std::optional<SwitchParams>& zone, double position) noexcept {
+    if (!zone) return position;
+    return distance(zone->fromTurns, position) < distance(zone->toTurns, position) ? zone->fromTurns
+                                                                                   : zone->toTurns;
+}
+
+}  // namespace
+
+void Homing::sample(const Motor& motor) noexcept {
+    signals_ = {motor.homeSwitch(), motor.positiveLimit(), motor.negativeLimit()};
+    position_ = motor.position();
+}
+
+void Homing::start(const HomingSettings& settings, HomingTable table, const Motor& motor,
+                   MotionGenerator& generator) noexcept {
+    settings_ = settings;
+    state_ = State::Searching;
+    at_ = 0;
+    stopping_ = false;
+    sample(motor);
+    if (settings.method == HomeAtPresentPosition) {
+        sequence_ = nullptr;
+        event_ = motor.position();
+        eventIsIndex_ = false;
+        settle(motor, generator);
+        return;
+    }
+    sequence_ = findHoming(table, settings.method, signals_);
+    if (sequence_ == nullptr) {
+        fail(generator);
+        return;
+    }
+    beginStep(motor, generator);
+}
+
+void Homing::beginStep(const Motor& motor, MotionGenerator& generator) noexcept {
+    const HomingStep& step = sequence_->steps[at_];
+    stopping_ = false;
+    sample(motor);
+    const double speed =
+        step.speed == HomingSpeed::Fast ? settings_.fastSpeed : settings_.slowSpeed;
+    generator.run(step.direction * speed, settings_.acceleration);
+}
+
+void Homing::interrupt(MotionGenerator& generator) noexcept {
+    if (state_ == State::Idle || state_ == State::Done || state_ == State::Failed) return;
+    state_ = State::Interrupted;
+    generator.run(0.0, settings_.acceleration);
+}
+
+void Homing::fail(MotionGenerator& generator) noexcept {
+    state_ = State::Failed;
+    generator.run(0.0, settings_.acceleration);
+}
+
+bool Homing::happened(HomingEvent event, int direction, const Motor& motor) noexcept {
+    const MechanicsParams& parts = motor.params();
+    eventIsIndex_ = event == HomingEvent::Index;
+    const auto edge = [&](bool before, bool now, bool on, const std::optional<SwitchParams>& zone) {
+        if (before == now || now != on) return false;
+        event_ = edgeNear(zone, motor.position());
+        return true;
+    };
+    switch (event) {
+        case HomingEvent::HomeOn:
+            return edge(signals_.home, motor.homeSwitch(), true, parts.homeSwitch);
+        case HomingEvent::HomeOff:
+            return edge(signals_.home, motor.homeSwitch(), false, parts.homeSwitch);
+        case HomingEvent::PositiveOn:
+            return edge(signals_.positive, motor.positiveLimit(), true, parts.positiveLimit);
+        case HomingEvent::PositiveOff:
+            return edge(signals_.positive, motor.positiveLimit(), false, parts.positiveLimit);
+        case HomingEvent::NegativeOn:
+            return edge(signals_.negative, motor.negativeLimit(), true, parts.negativeLimit);
+        case HomingEvent::NegativeOff:
+            return edge(signals_.negative, motor.negativeLimit(), false, parts.negativeLimit);
+        case HomingEvent::Index:
+            break;
+    }
+    // The pulse repeats every turn; mirrored for the negative direction.
+    const double sign = direction > 0 ? 1.0 : -1.0;
+    const double before = std::floor(sign * (position_ - parts.indexTurns));
+    const double now = std::floor(sign * (motor.position() - parts.indexTurns));
+    if (now <= before) return false;
+    event_ = sign * now + parts.indexTurns;
+    return true;
+}
+
+bool Homing::blocked(const HomingStep& step, const Motor& motor) const noexcept {
+    // A limit switch in the direction of travel that the method does not ask for ends the run.
+    const bool asksPositive =
+        step.event == HomingEvent::PositiveOn || step.event == HomingEvent::PositiveOff;
+    const bool asksNegative =
+        step.event == HomingEvent::NegativeOn || step.event == HomingEvent::NegativeOff;
+    return step.direction > 0 ? motor.positiveLimit() && !asksPositive
+                              : motor.negativeLimit() && !asksNegative;
+}
+
+void Homing::step(const Motor& motor, MotionGenerator& generator) noexcept {
+    switch (state_) {
+        case State::Idle:
+        case State::Done:
+        case State::Interrupted:
+        case State::Failed:
+            return;
+        case State::Settling:
+            settle(motor, generator);
+            return;
+        case State::ToOffset:
+            if (generator.finished()) arrive(generator);
+            return;
+        case State::Searching:
+            break;
+    }
+    const HomingStep& step = sequence_->steps[at_];
+    if (stopping_) {
+        if (!generator.finished()) return;
+        ++at_;
+        beginStep(motor, generator);
+        return;
+    }
+    if (happened(step.event, step.direction, motor)) {
+        switch (step.action) {
+            case HomingAction::Stop:
+                stopping_ = true;
+                generator.run(0.0, settings_.acceleration);
+                break;
+            case HomingAction::Go:
+                ++at_;
+                beginStep(motor, generator);
+                break;
+            case HomingAction::Finish:
+                found(motor, generator);
+                break;
+        }
+    } else if (blocked(step, motor)) {
+        fail(generator);
+        return;
+    }
+    sample(motor);
+}
+
+void Homing::found(const Motor& motor, MotionGenerator& generator) noexcept {
+    state_ = State::Settling;
+    if (settings_.reference == HomeReference::LatchedEdge) {
+        // The servo locks at once, without a ramp.
+        generator.begin({motor.position(), 0.0, 0.0});
+    } else {
+        generator.run(0.0, settings_.acceleration);
+    }
+}
+
+void Homing::settle(const Motor& motor, MotionGenerator& generator) noexcept {
+    state_ = State::Settling;
+    // Standing means the motor, not only its demand: less than a millionth of a turn in a
+    // millisecond.
+    constexpr double AlmostZero = 1e-3;
+    if (!generator.finished() || distance(motor.velocity(), 0.0) > AlmostZero) return;
+    const bool latched = settings_.reference == HomeReference::LatchedEdge || eventIsIndex_;
+    home_ = latched ? event_ : motor.position();
+    if (!settings_.movesToOffset) {
+        state_ = State::Done;
+        return;
+    }
+    const double target = home_ + settings_.offset;
+    state_ = State::ToOffset;
+    if (!latched && settings_.offset == 0.0) {
+        generator.begin({home_, 0.0, 0.0});
+        arrive(generator);
+        return;
+    }
+    generator.moveTo(target, settings_.offsetSpeed, settings_.acceleration);
+}
+
+void Homing::arrive(MotionGenerator& generator) noexcept {
+    const Demand stand = generator.demand();
+    generator.begin(stand);
+    state_ = State::Done;
+}
+
+}  // namespace takt::twin

@@ -1,0 +1,148 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "takt_process.hpp"
+
+namespace takt::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string Gantry = std::string{TAKT_SOURCE_DIR} + "/samples/03_gantry/machine.xml";
+
+std::string programPath(const std::string& name) {
+    return std::string{TAKT_BINARY_DIR} + "/test_programs/" + name + ".so";
+}
+
+/// Runs the gantry's machine with another program.
+ProcessResult runWith(const std::string& program, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"run", Gantry, "--fast", "--program", program};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runTakt(arguments, TAKT_BINARY_DIR);
+}
+
+/// The gantry's machine file with one text replaced, in a folder of its own.
+std::string changedMachine(const std::string& name, const std::string& from, const std::string& to) {
+    std::string text = readFile(Gantry);
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << "the base machine no longer has " << from;
+    if (at != std::string::npos) text.replace(at, from.size(), to);
+    for (std::size_t p = 0; (p = text.find("../devices/", p)) != std::string::npos;) {
+        text.replace(p, 3, std::string{TAKT_SOURCE_DIR} + "/samples/");
+    }
+    const std::string file = freshFolder(name) + "/machine.xml";
+    writeFile(file, text);
+    return file;
+}
+
+TEST(Run, RefusesAProgramLibraryThatIsMissing) {
+    const auto result = runWith("nowhere/libnothing.so");
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_THAT(result.output, HasSubstr("nowhere/libnothing.so"));
+    EXPECT_THAT(result.output, HasSubstr("does not exist"));
+}
+
+TEST(Run, RefusesALibraryWithoutEntryPoint) {
+    const auto result = runWith(programPath("no_entry"));
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_THAT(result.output, HasSubstr("no entry point 'taktProgramEntry'"));
+    EXPECT_THAT(result.output, HasSubstr("TAKT_PROGRAM"));
+}
+
+TEST(Run, RefusesAProgramBuiltForAnotherAbiWithoutRunningItsCode) {
+    const auto result = runWith(programPath("other_abi"));
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_THAT(result.output, HasSubstr("program ABI 2, this takt needs 1"));
+}
+
+TEST(Run, RefusesAProgramThatAsksForAnUnknownAxisAndNamesTheKnownOnes) {
+    const auto result = runWith(programPath("unknown_axis"));
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_THAT(result.output, HasSubstr("'unknown_axis' asks for axis 'Q'"));
+    EXPECT_THAT(result.output, HasSubstr("allowed: X, Y, Z"));
+}
+
+TEST(Run, NamesTheLineOfAProgramThatIsRefused) {
+    const std::string file = changedMachine("program_line", "libgantry.so", "libnot_there.so");
+    const auto result = runTakt({"run", file, "--fast"}, TAKT_BINARY_DIR);
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_THAT(result.output, HasSubstr("machine.xml:"));
+    EXPECT_THAT(result.output, HasSubstr("libnot_there.so"));
+}
+
+TEST(Run, RefusesEverythingThatIsWrongAtOnceAndStartsNothing) {
+    const std::string file = changedMachine("half_started", "cycle=\"1 ms\"", "cycle=\"3 ms\"");
+    const std::string trace = std::filesystem::path{file}.parent_path() / "a.csv";
+    const auto result = runTakt({"run", file, "--fast", "--trace", trace, "--program", "nowhere.so"},
+                                TAKT_BINARY_DIR);
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_FALSE(std::filesystem::exists(trace));
+}
+
+TEST(Run, StopsTheAxesOfAProgramThatThrowsAndKeepsTheBusInOp) {
+    const std::string folder = freshFolder("throws");
+    const std::string trace = folder + "/throws.csv";
+    const auto result = runWith(programPath("throws"), {"--trace", trace});
+    EXPECT_EQ(result.exitCode, 3) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("'throws'"));
+    EXPECT_THAT(result.output, HasSubstr("the part is missing"));
+    EXPECT_THAT(result.output, HasSubstr("0 lost"));
+    EXPECT_THAT(result.output, HasSubstr("working counter errors 0"));
+    const auto judged = runCommand({"python3", std::string{TAKT_SOURCE_DIR} + "/tests/machine/continuity.py",
+                                    trace, "--machine", Gantry},
+                                   folder);
+    EXPECT_EQ(judged.exitCode, 0) << judged.output;
+    const std::string text = readFile(trace);
+    EXPECT_THAT(text, HasSubstr("ContinuousMotion"));
+    EXPECT_THAT(text, Not(HasSubstr("ErrorStop")));
+}
+
+TEST(Run, TellsWhyAProgramFailedAndWhatItWatches) {
+    const auto result = runWith(programPath("fails"));
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_THAT(result.output, HasSubstr("no part in the gripper"));
+    EXPECT_THAT(result.output, HasSubstr("grip = 7"));
+}
+
+TEST(Run, RunsAProgramThatIsLinkedIntoTheExecutable) {
+    const auto result = runCommand({std::string{TAKT_BINARY_DIR} + "/test_programs/linked_program", "run",
+                                    Gantry, "--fast"},
+                                   TAKT_BINARY_DIR);
+    EXPECT_EQ(result.exitCode, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("'pick'"));
+}
+
+TEST(Run, EndsAfterTheTimeAskedForWithoutPrograms) {
+    const auto result = runTakt({"run", Gantry, "--fast", "--manual", "--for", "500ms"}, TAKT_BINARY_DIR);
+    EXPECT_EQ(result.exitCode, 0) << result.output;
+}
+
+TEST(Run, SaysWhichFileCannotBeWrittenBeforeAnythingMoves) {
+    const auto result = runTakt({"run", Gantry, "--fast", "--trace", "/nowhere/a.csv"}, TAKT_BINARY_DIR);
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_THAT(result.output, HasSubstr("/nowhere/a.csv"));
+    EXPECT_THAT(result.output, Not(HasSubstr("devices")));
+}
+
+TEST(Run, RefusesACommandLineItDoesNotUnderstand) {
+    EXPECT_EQ(runTakt({"run", Gantry, "--fats"}, TAKT_BINARY_DIR).exitCode, 1);
+    EXPECT_EQ(runTakt({"run", Gantry, "--fast", "--for", "10 apples"}, TAKT_BINARY_DIR).exitCode, 1);
+}
+
+TEST(Check, SaysWhatTheNetworkNeedsAndThatTheMachineIsGood) {
+    const auto result = runTakt({"check", Gantry}, TAKT_BINARY_DIR);
+    EXPECT_EQ(result.exitCode, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("receive deadline"));
+    EXPECT_THAT(result.output, HasSubstr("SYNC0"));
+    EXPECT_THAT(result.output, HasSubstr("machine.xml: good"));
+}
+
+TEST(Check, CannotRunWithoutAFile) {
+    EXPECT_EQ(runTakt({"check", "nowhere.xml"}, TAKT_BINARY_DIR).exitCode, 2);
+}
+
+}  // namespace
+}  // namespace takt::test
