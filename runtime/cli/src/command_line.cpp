@@ -11,6 +11,8 @@
 #include <takt/daemon/run.hpp>
 #include <takt/program/entry.hpp>
 
+#include "new_project.hpp"
+
 namespace takt::cli {
 
 namespace {
@@ -66,6 +68,15 @@ void addCheck(CLI::App& app, daemon::RunOptions& options) {
     command->add_option("machine", options.machine, "machine.xml")->required();
 }
 
+void addNew(CLI::App& app, NewProjectOptions& options) {
+    auto* command = app.add_subcommand("new", "write a machine of your own: machine file, program, build, test, CI");
+    command->add_option("folder", options.folder, "a folder that is not there yet, or empty")->required();
+    command->add_option("--esi", options.esi, "device files; without: one CD300E drive");
+    command->add_option("--device", options.devices, "types wanted from the device files, in frame order");
+    command->add_option("--eni", options.eni, "network file");
+    command->add_flag("--json", options.json, "tell the result as JSON");
+}
+
 }  // namespace
 
 int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> programs) {
@@ -79,6 +90,8 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
     daemon::RunOptions checkOptions;
     addRun(app, runArguments);
     addCheck(app, checkOptions);
+    NewProjectOptions newOptions;
+    addNew(app, newOptions);
     try {
         app.parse(argc, argv);
         if (!runArguments.length.empty()) runArguments.options.length = parseLength(runArguments.length);
@@ -87,6 +100,10 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
         return app.exit(error) == 0 ? 0 : static_cast<int>(daemon::ExitCode::Refused);
     }
 
+    if (app.got_subcommand("new")) {
+        newOptions.executableFolder = executableFolder();
+        return newProject(newOptions);
+    }
     if (app.got_subcommand("check")) {
         checkOptions.searchDirs.push_back(executableFolder());
         return daemon::check(checkOptions);
