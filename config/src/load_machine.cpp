@@ -25,6 +25,15 @@ std::optional<std::filesystem::path> findLibrary(const std::filesystem::path& li
     return std::nullopt;
 }
 
+/// The children of a name, none of them if there are more than any machine has.
+std::vector<XmlElement> boundedChildren(ElementReader& machine, std::string_view name) {
+    constexpr std::size_t Most = 1000;
+    std::vector<XmlElement> elements = machine.children(name);
+    if (elements.size() <= Most) return elements;
+    machine.error({}, fmt::format("there are {} <{}>", elements.size(), name), "at most 1000");
+    return {};
+}
+
 /// Reports names that stand twice among the elements of one kind.
 class UniqueNames {
 public:
@@ -47,7 +56,7 @@ private:
 std::vector<AxisPart> readAxes(ElementReader& machine, NetworkPart& network) {
     std::vector<AxisPart> axes;
     UniqueNames names{"an axis"};
-    for (const XmlElement element : machine.children("Axis")) {
+    for (const XmlElement element : boundedChildren(machine, "Axis")) {
         axes.push_back(
             readAxis({element, "axis", machine.place().file, machine.diagnostics()}, network));
         names.add(axes.back().params.name, axes.back().reader);
@@ -65,7 +74,7 @@ std::vector<program::ProgramParams> readPrograms(ElementReader& machine, const F
                                                  ProgramLibraries libraries) {
     std::vector<program::ProgramParams> programs;
     UniqueNames names{"a program"};
-    for (const XmlElement element : machine.children("Program")) {
+    for (const XmlElement element : boundedChildren(machine, "Program")) {
         const ElementReader reader{element, "program", machine.place().file, machine.diagnostics()};
         programs.push_back(readProgram(reader, folders, libraries));
         ElementReader named = reader;
