@@ -17,6 +17,12 @@ namespace {
 /// A duration this little (relative to a cycle) above a whole number of cycles is rounding.
 constexpr double kStepTolerance = 1e-9;
 
+Dynamics gentler(const Dynamics& dynamics) noexcept {
+    Dynamics d = dynamics;
+    d.acceleration = d.deceleration = std::min(d.acceleration, d.deceleration);
+    return d;
+}
+
 State restAt(Position position) noexcept {
     return {position, Velocity{}, Acceleration{}};
 }
@@ -97,18 +103,33 @@ ErrorId Motion::beginBraking(const Dynamics& dynamics) noexcept {
     return ErrorId::None;
 }
 
+/// Whether the way to go has a turn in it, and whether it stays inside the software limits until
+/// there. `wanted` is the direction of travel, `target` where it ends, if it does.
+ErrorId Motion::judgeWay(const Dynamics& dynamics, double wanted, std::optional<Position> target,
+                         bool& turns) const noexcept {
+    turns = false;
+    if (!underWay()) return ErrorId::None;
+    auto stop = stopFrom(set_, dynamics);
+    if (!stop) return ErrorId::ProfileNotFeasible;
+    const double present =
+        set_.velocity == Velocity{} ? set_.acceleration.count() : set_.velocity.count();
+    const double rest = (*stop - set_.position).count();
+    turns = present * wanted < 0.0 || rest * wanted < 0.0;
+    if (target) turns = turns || (*stop - *target).count() * wanted > 0.0;
+    if (turns) {
+        // The way back is planned with the smaller limit, so braking takes as long as that needs.
+        stop = stopFrom(set_, gentler(dynamics));
+        if (!stop) return ErrorId::ProfileNotFeasible;
+    }
+    return limitPassed(*stop) ? ErrorId::SWLimitReached : ErrorId::None;
+}
+
 ErrorId Motion::beginPosition(Position target, const Dynamics& dynamics) noexcept {
     if (const ErrorId bad = checkTarget(*traits_, target); bad != ErrorId::None) return bad;
     const bool forward = target >= set_.position;
     bool turns = false;
-    if (underWay()) {
-        const auto stop = stopFrom(set_, dynamics);
-        if (!stop) return ErrorId::ProfileNotFeasible;
-        if (limitPassed(*stop)) return ErrorId::SWLimitReached;
-        const bool runsBack = (set_.velocity > Velocity{}) != forward;
-        const bool overruns = forward ? *stop > target : *stop < target;
-        turns = runsBack || overruns;
-    }
+    const ErrorId way = judgeWay(dynamics, (target - set_.position).count(), target, turns);
+    if (way != ErrorId::None) return way;
     const auto profile = planner::plan(set_, {planner::TargetKind::State, restAt(target)},
                                        moving(dynamics, forward, turns));
     if (!profile.ok()) return ErrorId::ProfileNotFeasible;
@@ -119,12 +140,9 @@ ErrorId Motion::beginPosition(Position target, const Dynamics& dynamics) noexcep
 
 ErrorId Motion::beginVelocity(const Dynamics& dynamics) noexcept {
     const Velocity wanted = dynamics.velocity;
-    if (underWay()) {
-        const auto stop = stopFrom(set_, dynamics);
-        if (!stop) return ErrorId::ProfileNotFeasible;
-        if (limitPassed(*stop)) return ErrorId::SWLimitReached;
-    }
-    const bool turns = set_.velocity.count() * wanted.count() < 0.0;
+    bool turns = false;
+    const ErrorId way = judgeWay(dynamics, wanted.count(), std::nullopt, turns);
+    if (way != ErrorId::None) return way;
     const bool forward =
         set_.velocity == Velocity{} ? wanted >= Velocity{} : set_.velocity > Velocity{};
     Dynamics d = dynamics;
@@ -250,7 +268,7 @@ planner::Limits Motion::moving(const Dynamics& d, bool forward, bool turns) cons
     // way turns, one sign of acceleration does both, so the smaller limit holds.
     Acceleration up = forward ? d.acceleration : d.deceleration;
     Acceleration down = forward ? d.deceleration : d.acceleration;
-    if (turns) up = down = std::min(d.acceleration, d.deceleration);
+    if (turns) up = down = gentler(d).deceleration;
     return {d.velocity, -d.velocity, up, -down, d.jerk};
 }
 

@@ -75,6 +75,21 @@ double ExtremalCurve::tolerance(double u) const noexcept {
                 std::fabs(main_.kd) + std::fabs(other_.kd));
 }
 
+ExtremalCurve::Point ExtremalCurve::meeting(double u, double distance) const noexcept {
+    const Value v = at(u);
+    const double missing = distance - v.distance;
+    // The rounding of the velocities moves the beginning in time, hence in position by `pace` times
+    // that.
+    const double dc = 4.0 * kEps * (std::fabs(main_.vz) + std::fabs(other_.vz)) * invJerk_;
+    const double uo = std::sqrt(u * u + c_);
+    const double movable = uo * uo > dc ? dc / uo : std::sqrt(dc);
+    const double pace = rate(u);
+    const double room = std::fabs(pace) * movable;
+    if (!(std::fabs(missing) <= tolerance(u) + room)) return {0.0, 0.0, 0.0, false};
+    const double shift = room > 0.0 && std::fabs(missing) <= room ? missing / pace : 0.0;
+    return {u, 0.0, v.duration + shift, true, shift};
+}
+
 double ExtremalCurve::bothHold() const noexcept {
     const double other = other_.full * other_.full - c_;
     return std::max(main_.full, other > 0.0 ? std::sqrt(other) : 0.0);
@@ -170,6 +185,16 @@ double ExtremalCurve::root(double lo, double hi, double distance) const noexcept
     return u;
 }
 
+double ExtremalCurve::anyRoot(double lo, double hi, double distance) const noexcept {
+    const bool rising = at(hi).distance > distance;
+    for (int i = 0; i < kMostSteps; ++i) {
+        const double middle = 0.5 * (lo + hi);
+        if (middle <= lo || middle >= hi) break;
+        ((at(middle).distance > distance) == rising ? hi : lo) = middle;
+    }
+    return 0.5 * (lo + hi);
+}
+
 double ExtremalCurve::rateZero(double lo, double hi) const noexcept {
     const bool rising = rate(hi) > 0.0;
     for (int i = 0; i < kMostSteps; ++i) {
@@ -236,9 +261,12 @@ void ExtremalCurve::pieces(const Point& p, double sign, Pieces& out) const noexc
         u = main_.full;
     }
     if (uo > other_.full) {
-        holdOther = (uu + c_ - other_.full * other_.full) / other_.full;
+        holdOther = (uu + c_ - other_.full * other_.full) / other_.full + p.shift;
         if (u < 0.0) both = other_.full + u;
         uo = other_.full;
+    } else {
+        uo += 0.5 * p.shift;
+        both += 0.5 * p.shift;
     }
     const double firstU = mainIsLast_ ? uo : u;
     const double lastU = mainIsLast_ ? u : uo;

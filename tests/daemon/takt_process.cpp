@@ -54,12 +54,14 @@ ProcessResult runCommand(const std::vector<std::string>& command, const std::str
     return result;
 }
 
-ProcessResult runTakt(const std::vector<std::string>& arguments, const std::string& workDir) {
+ProcessResult runTakt(const std::vector<std::string>& arguments, const std::string& workDir,
+                      const std::vector<std::string>& extraEnvironment) {
     std::vector<std::string> command{std::string{TAKT_BINARY_DIR} + "/takt"};
     command.insert(command.end(), arguments.begin(), arguments.end());
     const std::string trap = std::string{TAKT_BINARY_DIR} + "/libtakt_trap.so";
-    if (!std::filesystem::exists(trap)) return runCommand(command, workDir);
-    return runCommand(command, workDir, {"LD_PRELOAD=" + trap});
+    std::vector<std::string> environment = extraEnvironment;
+    if (std::filesystem::exists(trap)) environment.push_back("LD_PRELOAD=" + trap);
+    return runCommand(command, workDir, environment);
 }
 
 std::string freshFolder(const std::string& name) {

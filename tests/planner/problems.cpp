@@ -98,6 +98,46 @@ Case wide(Random& random) {
     return {within(random, l, 0), {TargetKind::State, within(random, l, way)}, l};
 }
 
+Case near(Random& random) {
+    const double m = random.logarithmic(1e-14, 1);
+    const Limits l =
+        limits(random.uniform(0.1, 2), random.uniform(0.5, 20), random.uniform(5, 500));
+    const auto little = [&] { return random.chance(0.4) ? m * random.uniform(-0.1, 0.1) : 0.0; };
+    return {state(0, little(), little()),
+            {TargetKind::State, state(m * random.uniform(-1, 1), little(), little())},
+            l};
+}
+
+namespace {
+
+State onALimit(Random& random, const Limits& l, double p) {
+    const bool up = random.chance(0.5);
+    const double a = (up ? l.maxAcceleration : l.minAcceleration).count();
+    const double v = (up ? l.maxVelocity : l.minVelocity).count();
+    const double swing = a * a / (2 * l.jerk.count());
+    switch (random.integer(0, 2)) {
+        case 0:
+            return state(p, v, 0);
+        case 1:  // the acceleration is taken back at full jerk to end on the velocity limit
+            if (std::fabs(v) > swing) return state(p, up ? v - swing : v + swing, a);
+            return state(p, v, 0);
+        default:
+            return state(p, 0, 0);
+    }
+}
+
+}  // namespace
+
+Case saturated(Random& random) {
+    const Limits l = anyLimits(random);
+    for (;;) {
+        const Case c{onALimit(random, l, 0),
+                     {TargetKind::State, onALimit(random, l, random.uniform(-5, 5))},
+                     l};
+        if (viable(c.from, l) && viable(c.target.state, l)) return c;
+    }
+}
+
 Case grid(Random& random) {
     const auto any = [&] { return static_cast<double>(random.integer(-2, 2)); };
     for (;;) {

@@ -36,10 +36,16 @@ std::vector<ProgramHost> loadPrograms(const config::MachineConfig& machine,
     std::uint16_t number = 1;
     for (const program::ProgramParams& params : machine.programs) {
         program::ProgramPtr program = takeLinked(linked, params.name);
+        if (!program && params.library.empty()) {
+            problems.push_back(fmt::format("{}: error: program '{}' has no library and is not linked in; do: add "
+                                           "library=\"…\", or run the executable that brings it",
+                                           params.origin, params.name));
+            continue;
+        }
         if (!program) {
             program::LoadedProgram loaded = program::loadProgram(params.library);
             if (!loaded.program) {
-                problems.push_back(fmt::format("{}: {}", params.origin, loaded.error));
+                problems.push_back(fmt::format("{}: error: {}", params.origin, loaded.error));
                 continue;
             }
             program = std::move(loaded.program);

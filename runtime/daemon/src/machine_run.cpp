@@ -87,8 +87,7 @@ void MachineRun::supervise() {
 
 void MachineRun::superviseGoingOp() {
     if (bus_.master().state() == NetworkState::Op) {
-        console_.line(fmt::format("network in OP after {:.3f} s; DC locked, host clock {:+.1f} ppm",
-                                  seconds(inPhase()), dcLock_.driftPpm()));
+        console_.line(fmt::format("network in OP after {:.3f} s, clocks locked", seconds(inPhase())));
         orders_.runPrograms = !options_.manual;
         return enter(Phase::Operating);
     }
@@ -195,9 +194,11 @@ void MachineRun::conclude() {
     const double wall = seconds(pace_.elapsed());
     const auto counters = bus_.master().counters();
     console_.line(fmt::format("{:.3f} s in {} cycles, {:.1f} times real time; frames {} sent, {} lost, {} late; "
-                              "working counter errors {}; largest DC phase error {} ns",
+                              "working counter errors {}; largest DC phase error {} ns, controller's clock {:+.1f} ppm "
+                              "against the reference",
                               simulated, now_, wall > 0 ? simulated / wall : 0.0, counters.framesSent, counters.framesLost,
-                              counters.framesLate, counters.workingCounterErrors, cycle_.worstPhaseError().count()));
+                              counters.framesLate, counters.workingCounterErrors, cycle_.worstPhaseError().count(),
+                              dcLock_.driftPpm()));
 }
 
 std::string MachineRun::summary() const {

@@ -130,16 +130,18 @@ bool SlaveAgent::nextOfScript(core::HostTime now, Request& request) noexcept {
         endStateStep();
         return false;
     }
-    const auto& object = std::get<ObjectStep>(step);
-    if (!stepStarted_) {
-        if (!coe_) {
-            fail({ScriptFailure::Kind::ObjectAborted, object.address.index, object.address.subindex,
-                  NoDictionary, wire::AlState::None, al_});
-            return false;
-        }
-        stepStarted_ = coe_->client.startWrite(object.address, object.value);
-    }
+    if (const auto* object = std::get_if<ObjectStep>(&step)) startObjectStep(*object);
     return false;  // the mailbox has the next datagram
+}
+
+void SlaveAgent::startObjectStep(const ObjectStep& step) noexcept {
+    if (stepStarted_) return;
+    if (coe_) {
+        stepStarted_ = coe_->client.startWrite(step.address, step.value);
+    } else {
+        fail({ScriptFailure::Kind::ObjectAborted, step.address.index, step.address.subindex,
+              NoDictionary, wire::AlState::None, al_});
+    }
 }
 
 bool SlaveAgent::nextOfMailbox(core::HostTime now, Request& request) noexcept {
@@ -192,12 +194,13 @@ void SlaveAgent::takeStatus(const Reply& reply) noexcept {
 }
 
 void SlaveAgent::takeRegister(const Reply& reply) noexcept {
-    const auto& write = std::get<RegisterStep>((*script_)[position_]);
+    const auto* write = std::get_if<RegisterStep>(&(*script_)[position_]);
+    if (write == nullptr) return;
     if (reply.served()) {
         stepDone();
     } else if (++registerTries_ >= RegisterTries) {
-        if (write.required) {
-            fail({ScriptFailure::Kind::RegisterSilent, write.address, 0, 0, wire::AlState::None,
+        if (write->required) {
+            fail({ScriptFailure::Kind::RegisterSilent, write->address, 0, 0, wire::AlState::None,
                   al_});
         } else {
             stepDone();
@@ -239,22 +242,22 @@ void SlaveAgent::afterMailbox() noexcept {
     if (userRequest_) {
         userRequest_ = false;
         userReply_ = reply;
-    } else if (scriptState_ == ScriptState::Running && stepStarted_ &&
-               std::holds_alternative<ObjectStep>((*script_)[position_])) {
-        endObjectStep();
+    } else if (scriptState_ == ScriptState::Running && stepStarted_) {
+        if (const auto* object = std::get_if<ObjectStep>(&(*script_)[position_])) {
+            endObjectStep(*object);
+        }
     }
 }
 
-void SlaveAgent::endObjectStep() noexcept {
-    const auto& object = std::get<ObjectStep>((*script_)[position_]);
+void SlaveAgent::endObjectStep(const ObjectStep& step) noexcept {
     const core::ObjectReply& reply = coe_->client.reply();
     if (reply.state == core::ObjectState::Failed) {
-        if (object.required) {
-            fail({ScriptFailure::Kind::ObjectAborted, object.address.index, object.address.subindex,
+        if (step.required) {
+            fail({ScriptFailure::Kind::ObjectAborted, step.address.index, step.address.subindex,
                   reply.abortCode, wire::AlState::None, al_});
             return;
         }
-        notes_.push({object.address, reply.abortCode});
+        notes_.push({step.address, reply.abortCode});
     }
     stepDone();
 }

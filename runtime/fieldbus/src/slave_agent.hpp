@@ -106,7 +106,8 @@ private:
     void takeRegister(const Reply& reply) noexcept;
     void afterMailbox() noexcept;
     void endStateStep() noexcept;
-    void endObjectStep() noexcept;
+    void startObjectStep(const ObjectStep& step) noexcept;
+    void endObjectStep(const ObjectStep& step) noexcept;
     void stepDone() noexcept;
     void fail(const ScriptFailure& failure) noexcept;
     [[nodiscard]] std::uint32_t whyNoObjects() const noexcept;

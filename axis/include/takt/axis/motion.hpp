@@ -55,6 +55,9 @@ public:
 private:
     friend struct AxisTestAccess;
 
+    [[nodiscard]] ErrorId judgeWay(const Dynamics& dynamics, double wanted,
+                                   std::optional<core::Position> target,
+                                   bool& turns) const noexcept;
     [[nodiscard]] ErrorId beginPosition(core::Position target, const Dynamics& dynamics) noexcept;
     [[nodiscard]] ErrorId beginVelocity(const Dynamics& dynamics) noexcept;
     [[nodiscard]] ErrorId beginBraking(const Dynamics& dynamics) noexcept;
