@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include <takt/daemon/run.hpp>
+#include <takt/daemon/sim.hpp>
 #include <takt/program/entry.hpp>
 
 #include "new_project.hpp"
@@ -52,8 +53,11 @@ void addRun(CLI::App& app, RunArguments& run) {
     auto* command = app.add_subcommand("run", "run a machine until its programs have finished");
     auto& options = run.options;
     command->add_option("machine", options.machine, "machine.xml")->required();
-    command->add_flag("--sim", run.sim, "on the simulated machine (the only one without an interface)");
-    command->add_flag("--fast", options.fast, "simulated, as fast as the computer can; implies --sim");
+    auto* sim = command->add_flag("--sim", run.sim, "on the simulated machine; so it is without --interface");
+    auto* fast = command->add_flag("--fast", options.fast, "simulated, as fast as the computer can; implies --sim");
+    command->add_option("--interface", options.interface, "on the network at this interface, in real time")
+        ->excludes(sim)
+        ->excludes(fast);
     command->add_option("--program", options.programLibrary, "run this program library instead of those in the machine file");
     command->add_flag("--manual", options.manual, "run without programs");
     command->add_option("--for", run.length, "stop after this time in operation, e.g. 10s");
@@ -77,6 +81,14 @@ void addNew(CLI::App& app, NewProjectOptions& options) {
     command->add_flag("--json", options.json, "tell the result as JSON");
 }
 
+void addSim(CLI::App& app, daemon::SimOptions& options) {
+    auto* command = app.add_subcommand("sim", "serve the simulated machine on a network interface");
+    command->add_option("machine", options.machine, "machine.xml")->required();
+    command->add_option("--interface", options.interface, "network interface, for example one end of a veth pair")
+        ->required();
+    command->add_flag("--quiet", options.quiet, "print errors only");
+}
+
 }  // namespace
 
 int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> programs) {
@@ -92,6 +104,8 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
     addCheck(app, checkOptions);
     NewProjectOptions newOptions;
     addNew(app, newOptions);
+    daemon::SimOptions simOptions;
+    addSim(app, simOptions);
     try {
         app.parse(argc, argv);
         if (!runArguments.length.empty()) runArguments.options.length = parseLength(runArguments.length);
@@ -107,6 +121,10 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
     if (app.got_subcommand("check")) {
         checkOptions.searchDirs.push_back(executableFolder());
         return daemon::check(checkOptions);
+    }
+    if (app.got_subcommand("sim")) {
+        simOptions.searchDirs.push_back(executableFolder());
+        return daemon::sim(simOptions);
     }
     runArguments.options.searchDirs.push_back(executableFolder());
     return daemon::run(runArguments.options, std::move(programs));

@@ -31,11 +31,13 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       axes_{machine.axes},
       programs_{machine.programs},
       reported_(programs_.size(), false),
-      bus_{machine_, recorders.capture()},
+      bus_{machine_,
+           options.interface.empty() ? simulatedEnd(machine_) : interfaceEnd(machine_, options.interface),
+           recorders.capture()},
       dcLock_{machine_.scheduler.dcLock, machine_.network.cycle},
       grid_{core::HostTime{}, machine_.network.cycle},
       cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_}},
-      pace_{!options.fast} {
+      pace_{!options.fast && options.interface.empty()} {
     attachAxes(machine_, bus_.master(), axes_);
 }
 

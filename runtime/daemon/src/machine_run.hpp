@@ -6,6 +6,7 @@
 #include <takt/daemon/run_options.hpp>
 
 #include "assembly.hpp"
+#include "bus.hpp"
 #include "console.hpp"
 #include "loading.hpp"
 #include "machine_cycle.hpp"
@@ -56,7 +57,7 @@ private:
     Axes& axes_;
     std::vector<ProgramHost>& programs_;
     std::vector<bool> reported_;  ///< programs whose end has been told
-    SimulatedBus bus_;
+    Bus bus_;
     scheduler::DcLock dcLock_;
     scheduler::Grid grid_;
     MachineCycle cycle_;

@@ -31,6 +31,7 @@ struct RunOptions {
     std::filesystem::path machine;
     std::filesystem::path programLibrary;   ///< replaces the libraries of the machine file; empty = none
     std::vector<std::filesystem::path> searchDirs;  ///< for program libraries named without a place
+    std::string interface;                  ///< of the real network; empty = simulated
     bool fast{false};                       ///< virtual time as fast as it goes, else paced by the wall clock
     bool manual{false};                     ///< without programs
     std::optional<core::Duration> length;   ///< stop after so much time in OP
