@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <climits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include <takt/daemon/sim.hpp>
 #include <takt/program/entry.hpp>
 
+#include "bus_verbs.hpp"
 #include "new_project.hpp"
 
 namespace takt::cli {
@@ -78,6 +80,7 @@ void addNew(CLI::App& app, NewProjectOptions& options) {
     command->add_option("--esi", options.esi, "device files; without: one CD300E drive");
     command->add_option("--device", options.devices, "types wanted from the device files, in frame order");
     command->add_option("--eni", options.eni, "network file");
+    command->add_option("--scan", options.interface, "take the devices that are on this network interface");
     command->add_flag("--json", options.json, "tell the result as JSON");
 }
 
@@ -87,6 +90,52 @@ void addSim(CLI::App& app, daemon::SimOptions& options) {
     command->add_option("--interface", options.interface, "network interface, for example one end of a veth pair")
         ->required();
     command->add_flag("--quiet", options.quiet, "print errors only");
+}
+
+/// What the bus tools were asked for; one struct for all, each verb takes its part.
+struct BusArguments {
+    BusOptions bus;
+    StatesOptions states;
+    ObjectOptions object;
+};
+
+CLI::App* addBusVerb(CLI::App& app, const char* name, const char* text, BusOptions& bus) {
+    auto* command = app.add_subcommand(name, text);
+    auto* interface = command->add_option("--interface", bus.interface, "network interface");
+    command->add_option("--sim", bus.machine, "the simulated network of this machine file")->excludes(interface);
+    command->add_option("--esi", bus.esi, "more device files to know devices by");
+    command->add_flag("--json", bus.json, "as JSON");
+    return command;
+}
+
+void addBusVerbs(CLI::App& app, BusArguments& arguments) {
+    BusOptions& bus = arguments.bus;
+    addBusVerb(app, "scan", "who is on a network, and which device file describes it", bus);
+    addBusVerb(app, "slaves", "one line for each device, with its state", bus);
+    auto* states = addBusVerb(app, "states", "states of the devices, or lead them to one", bus);
+    states->add_option("state", arguments.states.state, "INIT, PREOP, SAFEOP or OP");
+    states->add_option("--slave", arguments.states.slave, "this device only: position or name");
+    ObjectOptions& object = arguments.object;
+    auto* upload = addBusVerb(app, "upload", "read an object of a device", bus);
+    auto* download = addBusVerb(app, "download", "write an object of a device", bus);
+    for (auto* command : {upload, download}) {
+        command->add_option("slave", object.slave, "position or name")->required();
+        command->add_option("object", object.object, "INDEX or INDEX:SUB, e.g. 0x1018:1")->required();
+        command->add_option("--type", object.type, "uint16, int32, float …; without: as the device file says");
+    }
+    download->add_option("value", object.value, "decimal, or hexadecimal with 0x")->required();
+}
+
+/// \return empty: another verb was given
+std::optional<int> runBusVerb(const CLI::App& app, BusArguments& arguments) {
+    arguments.bus.executableFolder = executableFolder();
+    arguments.states.bus = arguments.object.bus = arguments.bus;
+    if (app.got_subcommand("scan")) return scan(arguments.bus);
+    if (app.got_subcommand("slaves")) return slaves(arguments.bus);
+    if (app.got_subcommand("states")) return states(arguments.states);
+    if (app.got_subcommand("upload")) return upload(arguments.object);
+    if (app.got_subcommand("download")) return download(arguments.object);
+    return std::nullopt;
 }
 
 }  // namespace
@@ -104,6 +153,8 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
     addCheck(app, checkOptions);
     NewProjectOptions newOptions;
     addNew(app, newOptions);
+    BusArguments busArguments;
+    addBusVerbs(app, busArguments);
     daemon::SimOptions simOptions;
     addSim(app, simOptions);
     try {
@@ -118,6 +169,7 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
         newOptions.executableFolder = executableFolder();
         return newProject(newOptions);
     }
+    if (const auto code = runBusVerb(app, busArguments)) return *code;
     if (app.got_subcommand("check")) {
         checkOptions.searchDirs.push_back(executableFolder());
         return daemon::check(checkOptions);

@@ -1,5 +1,6 @@
 #include "installed_files.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -22,6 +23,15 @@ InstalledFiles findInstalledFiles(const std::filesystem::path& executableFolder)
     }
     throw std::runtime_error{
         "the device files and the schema of takt are not beside the command; install takt"};
+}
+
+std::vector<std::filesystem::path> deviceFiles(const InstalledFiles& installed) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator{installed.devices}) {
+        if (entry.path().extension() == ".xml") files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
 }
 
 }  // namespace takt::cli

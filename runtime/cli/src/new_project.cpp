@@ -4,20 +4,20 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <takt/config/known_drives.hpp>
-#include <takt/daemon/run_options.hpp>
 #include <takt/program/version.hpp>
 #include <utility>
 
 #include "installed_files.hpp"
+#include "json.hpp"
 #include "project_devices.hpp"
 #include "project_templates.hpp"
+#include "tool_bus.hpp"
 
 namespace takt::cli {
 
@@ -289,17 +289,29 @@ void write(const std::filesystem::path& folder, const Files& files) {
 std::vector<ProjectDevice> pickDevices(const NewProjectOptions& options,
                                        const InstalledFiles& installed) {
     std::vector<std::filesystem::path> files = options.esi;
+    if (!options.interface.empty()) {
+        for (const auto& file : deviceFiles(installed)) files.push_back(file);
+        BusOptions network;
+        network.interface = options.interface;
+        network.executableFolder = options.executableFolder;
+        ToolBus bus{network};
+        std::vector<wire::Identity> found;
+        for (const auto& device : bus.tool().devices()) found.push_back(device.identity);
+        return findDevices(files, found);
+    }
     if (files.empty()) files = {installed.devices / "cd300e.xml"};
     return chooseDevices(files, options.devices);
 }
 
 void tell(const NewProjectOptions& options, const Project& project, const Files& files) {
     if (options.json) {
-        std::string names;
-        for (const auto& file : files)
-            names += fmt::format("{}\"{}\"", names.empty() ? "" : ",", file.first);
-        fmt::print("{{\"name\":\"{}\",\"axes\":{},\"files\":[{}]}}\n", project.name, project.axes,
-                   names);
+        std::vector<std::string> names;
+        for (const auto& file : files) names.push_back(jsonText(file.first));
+        fmt::print("{}\n", JsonObject{}
+                               .add("name", project.name)
+                               .addRaw("axes", std::to_string(project.axes))
+                               .addRaw("files", jsonArray(names))
+                               .text());
         return;
     }
     const auto values = placeholders(project);
@@ -314,7 +326,7 @@ void tell(const NewProjectOptions& options, const Project& project, const Files&
 }  // namespace
 
 int newProject(const NewProjectOptions& options) {
-    try {
+    return runVerb("new", [&options] {
         if (!options.eni.empty()) {
             throw std::runtime_error{
                 fmt::format("{}: ENI files cannot be read yet; use the device files (ESI) of the "
@@ -328,10 +340,7 @@ int newProject(const NewProjectOptions& options) {
         write(options.folder, files);
         tell(options, project, files);
         return 0;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "takt new: {}\n", error.what());
-        return static_cast<int>(daemon::ExitCode::CouldNotRun);
-    }
+    });
 }
 
 }  // namespace takt::cli
