@@ -90,8 +90,9 @@ TEST_P(Sample, ShowsThePlotOfARunOfToday) {
 }
 
 TEST_P(Sample, SaysWhatItIsAndHowToRunIt) {
-    EXPECT_THAT(readFile(folder() + "/README.md"),
-                AllOf(HasSubstr("takt run"), HasSubstr("machine.xml --fast"), HasSubstr("](plot.svg)")));
+    EXPECT_THAT(
+        readFile(folder() + "/README.md"),
+        AllOf(HasSubstr("takt run"), HasSubstr("machine.xml --fast"), HasSubstr("](plot.svg)")));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Sample, testing::ValuesIn(samples()),

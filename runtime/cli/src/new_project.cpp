@@ -36,6 +36,7 @@ struct NamedDevice {
 
 struct Project {
     std::string name;
+    std::string interface;  ///< on which the devices were found; empty: none
     std::vector<NamedDevice> devices;
     std::size_t axes{0};
 };
@@ -121,6 +122,7 @@ std::string axisName(std::size_t number) {
 Project makeProject(const NewProjectOptions& options, std::vector<ProjectDevice> devices) {
     Project project;
     project.name = projectName(options.folder);
+    project.interface = options.interface;
     for (ProjectDevice& device : devices) {
         NamedDevice named{
             std::move(device), fmt::format("device{}", project.devices.size() + 1), {}};
@@ -192,6 +194,11 @@ std::string twinElement(const NamedDevice& device) {
                        device.slave);
 }
 
+std::string interfaceAttribute(const Project& project) {
+    if (project.interface.empty()) return {};
+    return fmt::format(" interface=\"{}\"", escaped(project.interface));
+}
+
 std::string machineFile(const Project& project) {
     std::string text = fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
 <!-- Every number carries its unit. `takt check machine.xml` says what is wrong with it, and where. -->
@@ -200,10 +207,11 @@ std::string machineFile(const Project& project) {
          xsi:noNamespaceSchemaLocation="machine.xsd">
 
   <!-- The devices in the order in which frames pass them. -->
-  <Network cycle="1 ms">
+  <Network cycle="1 ms"{3}>
 {1}{2}  </Network>
 )",
-                                   project.name, esiElements(project), slaveElements(project));
+                                   project.name, esiElements(project), slaveElements(project),
+                                   interfaceAttribute(project));
     text +=
         "\n  <!-- perTurn: travel of the load for one turn of the motor. Put your mechanics and "
         "limits here. -->";
