@@ -147,6 +147,7 @@ std::vector<ProjectDevice> chooseDevices(const std::vector<std::filesystem::path
                          [&type](const ProjectDevice& entry) { return entry.device.type == type; });
         if (found == known.end()) {
             std::vector<wire::DeviceDescription> devices;
+            devices.reserve(known.size());
             for (const ProjectDevice& entry : known) devices.push_back(entry.device);
             throw std::runtime_error{fmt::format(
                 "no device '{}' is in the device files; there are: {}", type, typesOf(devices))};

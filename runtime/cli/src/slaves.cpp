@@ -8,18 +8,6 @@
 
 namespace takt::cli {
 
-std::string stateWord(const fieldbus::ethercat::SegmentDevice& device) {
-    if (device.state == wire::AlState::None) return "silent";
-    return fmt::format("{}{}", wire::name(device.state), device.stateError ? " + ERROR" : "");
-}
-
-std::string problemOf(const fieldbus::ethercat::SegmentDevice& device) {
-    if (device.state == wire::AlState::None) return "does not answer; check cable and power";
-    if (!device.stateError) return {};
-    return fmt::format("0x{:04X} {}", device.alStatusCode,
-                       wire::explainAlStatus(device.alStatusCode));
-}
-
 int slaves(const BusOptions& options) {
     return runVerb("slaves", [&options] {
         const ToolBus bus{options};

@@ -44,8 +44,7 @@ public:
     enum class From : std::uint8_t { Init, AnyState };
 
     explicit DeviceScan(std::uint16_t station, From from = From::Init)
-        : station_{station},
-          phase_{from == From::Init ? Phase::AwaitInit : Phase::Information} {}
+        : station_{station}, phase_{from == From::Init ? Phase::AwaitInit : Phase::Information} {}
 
     bool next(core::HostTime now, Request& request) noexcept override;
     void take(core::HostTime now, const Reply& reply) noexcept override;
