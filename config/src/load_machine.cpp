@@ -111,7 +111,11 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     machine.scheduler.cycle = machine.network.cycle;
     for (SlavePart& slave : network.slaves)
         machine.network.slaves.push_back(std::move(slave.params));
-    for (const AxisPart& axis : axes) machine.axes.push_back(axis.params);
+    for (const AxisPart& axis : axes) {
+        machine.axes.push_back(axis.params);
+        // One number for the bus and its axes: n_lost.
+        machine.axes.back().supervision.lostCycles = machine.network.lostLimit;
+    }
     return machine;
 }
 

@@ -102,7 +102,7 @@ bool FrameSet::openFrame() noexcept {
 }
 
 std::size_t FrameSet::room() const noexcept {
-    if (datagrams_.size() == datagrams_.capacity()) return 0;
+    if (full()) return 0;
     if (writer_) return writer_->room();
     if (!reopenable()) return 0;
     const std::size_t used = datagrams_.back().end() + wire::DatagramOverhead;

@@ -14,13 +14,6 @@ namespace {
 constexpr std::size_t MostDatagramsInFrame = 128;
 constexpr std::uint64_t MailboxLookGap = 8;  ///< cycles, for slaves without a mailbox state FMMU
 
-NetworkParams inFrameOrder(NetworkParams network) {
-    std::stable_sort(
-        network.slaves.begin(), network.slaves.end(),
-        [](const SlaveParams& a, const SlaveParams& b) { return a.position < b.position; });
-    return network;
-}
-
 }  // namespace
 
 struct Master::Parts {
@@ -61,7 +54,7 @@ struct Master::Parts {
 
 Master::Parts::Parts(const NetworkParams& params, wire::Link& wireLink,
                      core::ClockSource& clockSource)
-    : network{inFrameOrder(params)},
+    : network{params},
       link{wireLink},
       clock{clockSource},
       timing{computeTiming(network)},
@@ -105,7 +98,7 @@ void Master::Parts::prepare() noexcept {
     frames.repeat();
     if (reference.present()) reference.fill(frames);
     data.fill(frames);
-    slice.fill(frames, machines, timing.acyclicBytes, now);
+    if (!slice.idle()) slice.fill(frames, machines, timing.acyclicBytes, now);
     frames.finish();
     prepared = true;
 }
@@ -128,7 +121,7 @@ void Master::Parts::exchange(core::CycleNumber cycle) noexcept {
     if (reference.present()) reference.take(frames);
     data.take(frames, walk.supervised());
     takeBus();
-    slice.deliver(frames, machines, now);
+    if (!slice.idle()) slice.deliver(frames, machines, now);
     takeMailboxStates();
     walk.step(cycle, now, reading);
 }
@@ -171,6 +164,7 @@ Master::~Master() = default;
 std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string_view)>& progress) {
     Parts& parts = *parts_;
     parts.walk.off();
+    parts.prepared = false;
     parts.data.reset();
     Conversation talk{parts.frames, parts.link, parts.clock};
     BringUp bringUp{{parts.network, parts.layout, parts.slice, parts.machines, parts.agents,
@@ -194,10 +188,11 @@ core::HostTime Master::firstSend(core::HostTime notBefore) const noexcept {
 }
 
 void Master::exchange(core::CycleNumber cycle) noexcept {
-    parts_->exchange(cycle);
+    // Without a configured network there is nothing that could be sent.
+    if (state() != NetworkState::Off) parts_->exchange(cycle);
 }
 void Master::prepare() noexcept {
-    parts_->prepare();
+    if (state() != NetworkState::Off) parts_->prepare();
 }
 void Master::requestOp() noexcept {
     parts_->walk.requestOp();
