@@ -70,6 +70,9 @@ void addDriveObjects(SlavePart& slave, const AxisPart& axis, std::uint32_t lostL
 [[nodiscard]] program::ProgramParams readProgram(ElementReader reader,
                                                  const std::vector<std::filesystem::path>& folders);
 
+/// Reads <Realtime>: how the cycle runs on a real network.
+void readRealtime(ElementReader reader, scheduler::SchedulerParams& params);
+
 /// Position, velocity, acceleration and jerk in the user unit of an axis.
 struct UnitDimensions {
     Dimension position{Dimension::Length};
