@@ -25,6 +25,15 @@ std::optional<std::filesystem::path> findLibrary(const std::filesystem::path& li
     return std::nullopt;
 }
 
+/// The children of a name, none of them if there are more than any machine has.
+std::vector<XmlElement> boundedChildren(ElementReader& machine, std::string_view name) {
+    constexpr std::size_t Most = 1000;
+    std::vector<XmlElement> elements = machine.children(name);
+    if (elements.size() <= Most) return elements;
+    machine.error({}, fmt::format("there are {} <{}>", elements.size(), name), "at most 1000");
+    return {};
+}
+
 /// Reports names that stand twice among the elements of one kind.
 class UniqueNames {
 public:
@@ -47,7 +56,7 @@ private:
 std::vector<AxisPart> readAxes(ElementReader& machine, NetworkPart& network) {
     std::vector<AxisPart> axes;
     UniqueNames names{"an axis"};
-    for (const XmlElement element : machine.children("Axis")) {
+    for (const XmlElement element : boundedChildren(machine, "Axis")) {
         axes.push_back(
             readAxis({element, "axis", machine.place().file, machine.diagnostics()}, network));
         names.add(axes.back().params.name, axes.back().reader);
@@ -64,7 +73,7 @@ std::vector<AxisPart> readAxes(ElementReader& machine, NetworkPart& network) {
 std::vector<program::ProgramParams> readPrograms(ElementReader& machine, const Folders& folders) {
     std::vector<program::ProgramParams> programs;
     UniqueNames names{"a program"};
-    for (const XmlElement element : machine.children("Program")) {
+    for (const XmlElement element : boundedChildren(machine, "Program")) {
         const ElementReader reader{element, "program", machine.place().file, machine.diagnostics()};
         programs.push_back(readProgram(reader, folders));
         ElementReader named = reader;
@@ -102,7 +111,11 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     machine.scheduler.cycle = machine.network.cycle;
     for (SlavePart& slave : network.slaves)
         machine.network.slaves.push_back(std::move(slave.params));
-    for (const AxisPart& axis : axes) machine.axes.push_back(axis.params);
+    for (const AxisPart& axis : axes) {
+        machine.axes.push_back(axis.params);
+        // One number for the bus and its axes: n_lost.
+        machine.axes.back().supervision.lostCycles = machine.network.lostLimit;
+    }
     return machine;
 }
 

@@ -38,7 +38,8 @@ private:
 /// A program that calls everything at random, on an axis that is hurt at random.
 class Chaos {
 public:
-    explicit Chaos(std::uint64_t seed, const axis::AxisParams& params) : rig{params}, random_{seed} {
+    explicit Chaos(std::uint64_t seed, const axis::AxisParams& params)
+        : rig{params}, random_{seed} {
         rig.power.Enable = rig.status.Enable = true;
     }
 
@@ -106,7 +107,8 @@ private:
     void checkState() {
         statesSeen |= 1 << static_cast<int>(rig.x.state());
         const auto s = rig.x.status();
-        hash_ = hash_ * 0.999 + s.set.count() + s.setVelocity.count() + static_cast<double>(s.state);
+        hash_ =
+            hash_ * 0.999 + s.set.count() + s.setVelocity.count() + static_cast<double>(s.state);
         // Bookkeeping: rest states have no motion, a command in control has a motion state.
         if (s.state == AxisState::Standstill) {
             EXPECT_EQ(s.setVelocity.count(), 0.0) << rig.k;

@@ -37,11 +37,11 @@ Bytes padded(Bytes frame) {
     return frame;
 }
 
-const Bytes Header{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00,
+const Bytes header{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00,
                    0x10, 0x54, 0x41, 0x4B, 0x54, 0x88, 0xA4};
 
 Bytes frameOf(const Bytes& datagrams) {
-    Bytes frame = Header;
+    Bytes frame = header;
     frame.push_back(static_cast<std::uint8_t>(datagrams.size()));
     frame.push_back(0x10);
     frame.insert(frame.end(), datagrams.begin(), datagrams.end());
@@ -83,7 +83,7 @@ TEST_F(TwinSegment, PassesUnknownAndIdleCommandsUnchanged) {
 }
 
 TEST_F(TwinSegment, DestroysWhatIsNoSoundEtherCatFrameAndCountsIt) {
-    Bytes foreign = padded(Header);
+    Bytes foreign = padded(header);
     foreign[12] = 0x08;
     foreign[13] = 0x00;
     EXPECT_TRUE(raw(foreign).empty());

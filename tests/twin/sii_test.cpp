@@ -45,7 +45,7 @@ TEST(TwinSii, HasTheChecksumOfItsFirstFourteenBytes) {
     // CRC-8 as a table-free long division over the bits, an independent way to the same number.
     const Bytes image = buildSiiImage(*servoDescription("generic"));
     std::uint32_t remainder = 0xFF;
-    for (std::size_t bit = 0; bit < 14 * 8; ++bit) {
+    for (std::size_t bit = 0; bit < std::size_t{14} * 8; ++bit) {
         const std::uint32_t in = (image[bit / 8] >> (7 - bit % 8)) & 1U;
         const std::uint32_t out = (remainder >> 7) & 1U;
         remainder = (remainder << 1) & 0xFF;

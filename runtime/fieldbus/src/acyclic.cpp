@@ -22,6 +22,7 @@ bool AcyclicSlice::add(FrameSet& frames, std::size_t machine, const Request& req
 void AcyclicSlice::fill(FrameSet& frames, std::span<AcyclicMachine* const> machines,
                         std::size_t budget, core::HostTime now) noexcept {
     waiting_.clear();
+    if (work_.empty()) return;
     const std::size_t start = start_;
     // From where the last slice was full to the end, then from the beginning.
     for (const bool wrapped : {false, true}) {

@@ -52,6 +52,12 @@ public:
 
     void set(std::size_t i) noexcept { words_[i / 64] |= std::uint64_t{1} << (i % 64); }
     void clear(std::size_t i) noexcept { words_[i / 64] &= ~(std::uint64_t{1} << (i % 64)); }
+    /// rt.
+    [[nodiscard]] bool empty() const noexcept {
+        std::uint64_t any = 0;
+        for (const std::uint64_t word : words_) any |= word;
+        return any == 0;
+    }
     /// rt. The first member at or after `from`; `none()` when there is none.
     [[nodiscard]] std::size_t firstFrom(std::size_t from) const noexcept {
         for (std::size_t word = from / 64; word < words_.size(); ++word) {

@@ -27,6 +27,7 @@ struct Master::Parts {
     Parts(const NetworkParams& params, wire::Link& wireLink, core::ClockSource& clockSource);
 
     void exchange(core::CycleNumber cycle) noexcept;
+    void compose() noexcept;
     void prepare() noexcept;
     void takeBus() noexcept;
     void takeMailboxStates() noexcept;
@@ -88,7 +89,8 @@ bool Master::Parts::mapped() const noexcept {
     return walk.state() != NetworkState::Off && walk.state() != NetworkState::Init;
 }
 
-void Master::Parts::prepare() noexcept {
+/// Puts together once what goes out in every cycle.
+void Master::Parts::compose() noexcept {
     frames.begin();
     for (std::size_t i = 0; i < layout.groups.size(); ++i) {
         frames.openFrame();
@@ -96,6 +98,13 @@ void Master::Parts::prepare() noexcept {
         data.append(frames, i);
         if (i == 0) appendExtras();
     }
+    frames.keep();
+}
+
+void Master::Parts::prepare() noexcept {
+    frames.repeat();
+    if (reference.present()) reference.fill(frames);
+    data.fill(frames);
     slice.fill(frames, machines, timing.acyclicBytes, now);
     frames.finish();
     prepared = true;
@@ -135,7 +144,7 @@ void Master::Parts::takeBus() noexcept {
 
 void Master::Parts::takeMailboxStates() noexcept {
     if (!mapped()) return;
-    lookIntoMailboxes();
+    if (!unmappedMailboxes.empty()) lookIntoMailboxes();
     if (layout.mailboxBits == 0) return;
     const Reply reply = frames.reply(mailboxRead);
     if (!reply.served()) return;
@@ -174,6 +183,7 @@ std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string
     parts.reading = {};
     parts.cycles = 0;
     parts.now = parts.clock.now();
+    parts.compose();
     parts.prepare();
     parts.frames.resetCounters();
     return problems;

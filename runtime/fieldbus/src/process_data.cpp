@@ -60,13 +60,17 @@ void ProcessData::append(FrameSet& frames, std::size_t group) noexcept {
     buffers.first = data.lrw
                         ? frames.appendLogical(wire::Command::Lrw, data.logical, both)
                         : frames.appendLogical(wire::Command::Lwr, data.logical, data.outputBytes);
-    if (data.outputBytes != 0) {
-        std::memcpy(frames.data(buffers.first).data(), &outputs_[buffers.outputs],
-                    data.outputBytes);
-    }
     if (!data.lrw) {
         buffers.second =
             frames.appendLogical(wire::Command::Lrd, data.inputLogical(), data.inputBytes);
+    }
+}
+
+void ProcessData::fill(FrameSet& frames) noexcept {
+    for (std::size_t i = 0; i < buffers_.size(); ++i) {
+        const std::size_t size = layout_.groups[i].outputBytes;
+        if (size == 0) continue;
+        std::memcpy(frames.data(buffers_[i].first).data(), &outputs_[buffers_[i].outputs], size);
     }
 }
 
