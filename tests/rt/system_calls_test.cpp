@@ -46,6 +46,16 @@ Counts difference(const Counts& longer, const Counts& shorter) {
     return rest;
 }
 
+/// Frames that were lost or late in both runs together.
+double strayFrames(const std::string& output) {
+    double sum = 0;
+    const std::regex summary{R"((\d+) lost, (\d+) late)"};
+    for (std::sregex_iterator at{output.begin(), output.end(), summary}, end; at != end; ++at) {
+        sum += std::stod((*at)[1]) + std::stod((*at)[2]);
+    }
+    return sum;
+}
+
 /// Two lengths of the same run: what the longer one has more is what cycles cost.
 TEST(SystemCalls, AreOneSendOneReceiveOneSleepAndTwoAtEachGate) {
     ASSERT_EQ(namespacesForbidden(), "");
@@ -61,18 +71,21 @@ TEST(SystemCalls, AreOneSendOneReceiveOneSleepAndTwoAtEachGate) {
     const double cycles = cycle["sendmmsg"];
     ASSERT_GT(cycles, 400) << result.output;
     EXPECT_EQ(cycle["clock_nanosleep"], cycles);
-    // A reply or a call that is already back need not be waited for.
+    // A reply or a call that is already back need not be waited for. On a busy computer a reply may be late,
+    // which costs one more wait, and so may a call, which costs a look at the processor time it has had.
     const double spare = 0.02 * cycles;
-    EXPECT_LE(cycle["ppoll"], cycles + spare);
-    EXPECT_GE(cycle["futex"], cycles);
+    const double lateCalls = cycle["clock_gettime"];
+    EXPECT_LE(cycle["ppoll"], cycles + spare + strayFrames(result.output));
+    EXPECT_GE(cycle["futex"], cycles - lateCalls);
     EXPECT_LE(cycle["futex"], 2 * cycles + spare);
+    cycle.erase("clock_gettime");
     for (const auto& [call, count] : cycle) {
         const bool known = call == "sendmmsg" || call == "ppoll" || call == "clock_nanosleep" || call == "futex";
         EXPECT_TRUE(known || count < spare) << call << ": " << count << " more in " << cycles << " cycles";
     }
     Counts program = difference(busiest(longer, "futex", "sendmmsg"), busiest(shorter, "futex", "sendmmsg"));
     EXPECT_LE(program["futex"], 2 * cycles + spare);
-    EXPECT_GE(program["futex"], cycles);
+    EXPECT_GE(program["futex"], cycles - lateCalls);
     program.erase("futex");
     for (const auto& [call, count] : program) EXPECT_LT(count, spare) << call;
 }
