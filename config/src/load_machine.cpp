@@ -105,6 +105,7 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     folders.insert(folders.end(), librarySearch.begin(), librarySearch.end());
     machine.programs = readPrograms(root, folders, libraries);
     machine.twin = readTwin(root.childReader("Twin"), network, axes);
+    readRealtime(root.childReader("Realtime"), machine.scheduler);
     noteIdleSlaves(network);
     root.finish();
     machine.network = std::move(network.params);

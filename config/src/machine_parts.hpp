@@ -72,6 +72,9 @@ void addDriveObjects(SlavePart& slave, const AxisPart& axis, std::uint32_t lostL
                                                  const std::vector<std::filesystem::path>& folders,
                                                  ProgramLibraries libraries);
 
+/// Reads <Realtime>: how the cycle runs on a real network.
+void readRealtime(ElementReader reader, scheduler::SchedulerParams& params);
+
 /// Position, velocity, acceleration and jerk in the user unit of an axis.
 struct UnitDimensions {
     Dimension position{Dimension::Length};

@@ -21,7 +21,7 @@ namespace takt::cli {
 namespace {
 
 /// "10s", "500 ms": a length of time with its unit.
-core::Duration parseLength(const std::string& text) {
+core::Duration parseLength(const char* option, const std::string& text) {
     static const std::map<std::string, double> units{{"ms", 1e6}, {"s", 1e9}, {"min", 60e9}, {"h", 3600e9}};
     std::size_t end = 0;
     double value = 0;
@@ -33,7 +33,7 @@ core::Duration parseLength(const std::string& text) {
     const std::size_t unitAt = text.find_first_not_of(' ', end);
     const auto unit = unitAt == std::string::npos ? units.end() : units.find(text.substr(unitAt));
     if (end == 0 || unit == units.end() || !(value > 0) || value * unit->second > 9e18) {
-        throw CLI::ValidationError("--for", "'" + text + "' is not a length of time; use for example 10s, 500ms, 5min");
+        throw CLI::ValidationError(option, "'" + text + "' is not a length of time; use for example 10s, 500ms, 5min");
     }
     return core::Duration{static_cast<std::int64_t>(value * unit->second)};
 }
@@ -48,6 +48,7 @@ std::filesystem::path executableFolder() {
 struct RunArguments {
     daemon::RunOptions options;
     std::string length;
+    std::string watchdog;
     bool sim{false};
 };
 
@@ -66,6 +67,8 @@ void addRun(CLI::App& app, RunArguments& run) {
     command->add_option("--trace", options.trace, "write every cycle to this CSV file");
     command->add_option("--plot", options.plot, "draw the run into this SVG file");
     command->add_option("--pcap", options.capture, "write every frame to this pcapng file");
+    command->add_option("--program-watchdog", run.watchdog,
+                        "simulated: end the run when a program does not come back for so long (10s)");
     command->add_flag("--quiet", options.quiet, "print errors only");
 }
 
@@ -159,7 +162,10 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
     addSim(app, simOptions);
     try {
         app.parse(argc, argv);
-        if (!runArguments.length.empty()) runArguments.options.length = parseLength(runArguments.length);
+        if (!runArguments.length.empty()) runArguments.options.length = parseLength("--for", runArguments.length);
+        if (!runArguments.watchdog.empty()) {
+            runArguments.options.programWatchdog = parseLength("--program-watchdog", runArguments.watchdog);
+        }
     } catch (const CLI::ParseError& error) {
         // CLI11 has codes of its own; a wrong command line is a refused configuration.
         return app.exit(error) == 0 ? 0 : static_cast<int>(daemon::ExitCode::Refused);

@@ -38,6 +38,8 @@ struct RunOptions {
     std::filesystem::path trace;            ///< CSV; empty = none
     std::filesystem::path plot;             ///< SVG
     std::filesystem::path capture;          ///< pcapng
+    /// On the wall clock, for programs of a simulated run: a call that takes longer ends the process.
+    core::Duration programWatchdog{std::chrono::seconds{10}};
     bool quiet{false};
 };
 
