@@ -70,12 +70,13 @@ std::vector<AxisPart> readAxes(ElementReader& machine, NetworkPart& network) {
     return axes;
 }
 
-std::vector<program::ProgramParams> readPrograms(ElementReader& machine, const Folders& folders) {
+std::vector<program::ProgramParams> readPrograms(ElementReader& machine, const Folders& folders,
+                                                 ProgramLibraries libraries) {
     std::vector<program::ProgramParams> programs;
     UniqueNames names{"a program"};
     for (const XmlElement element : boundedChildren(machine, "Program")) {
         const ElementReader reader{element, "program", machine.place().file, machine.diagnostics()};
-        programs.push_back(readProgram(reader, folders));
+        programs.push_back(readProgram(reader, folders, libraries));
         ElementReader named = reader;
         named.relabel(fmt::format("program '{}'", programs.back().name));
         names.add(programs.back().name, named);
@@ -92,7 +93,7 @@ void noteIdleSlaves(const NetworkPart& network) {
 }
 
 MachineConfig readMachine(const XmlDocument& document, const Folders& librarySearch,
-                          Diagnostics& diagnostics) {
+                          ProgramLibraries libraries, Diagnostics& diagnostics) {
     const std::filesystem::path folder = std::filesystem::path{document.file()}.parent_path();
     MachineConfig machine;
     ElementReader root{document.root(), "machine", document.file(), diagnostics};
@@ -102,8 +103,9 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     const std::vector<AxisPart> axes = readAxes(root, network);
     Folders folders{folder};
     folders.insert(folders.end(), librarySearch.begin(), librarySearch.end());
-    machine.programs = readPrograms(root, folders);
+    machine.programs = readPrograms(root, folders, libraries);
     machine.twin = readTwin(root.childReader("Twin"), network, axes);
+    readRealtime(root.childReader("Realtime"), machine.scheduler);
     noteIdleSlaves(network);
     root.finish();
     machine.network = std::move(network.params);
@@ -154,7 +156,8 @@ void addSchemaMessages(const XmlDocument& document, Diagnostics& diagnostics) {
 
 }  // namespace
 
-program::ProgramParams readProgram(ElementReader reader, const Folders& folders) {
+program::ProgramParams readProgram(ElementReader reader, const Folders& folders,
+                                   ProgramLibraries libraries) {
     program::ProgramParams program;
     program.origin = format(reader.place());
     const auto name = reader.name("name");
@@ -170,6 +173,10 @@ program::ProgramParams readProgram(ElementReader reader, const Folders& folders)
         reader.error("budget", "a program cannot have more than the whole cycle", "up to 100 %");
     }
     if (!library) return program;
+    if (libraries == ProgramLibraries::NotNeeded) {
+        program.library = *library;
+        return program;
+    }
     if (const auto found = findLibrary(*library, folders)) {
         program.library = found->string();
         return program;
@@ -185,7 +192,8 @@ program::ProgramParams readProgram(ElementReader reader, const Folders& folders)
     return program;
 }
 
-LoadResult loadMachine(const std::filesystem::path& file, const Folders& librarySearch) {
+LoadResult loadMachine(const std::filesystem::path& file, const Folders& librarySearch,
+                       ProgramLibraries libraries) {
     LoadResult result;
     const auto document = loadXml(file, MaxMachineFile, result.diagnostics);
     if (!document) return result;
@@ -196,7 +204,7 @@ LoadResult loadMachine(const std::filesystem::path& file, const Folders& library
             "<Machine>");
         return result;
     }
-    MachineConfig machine = readMachine(*document, librarySearch, result.diagnostics);
+    MachineConfig machine = readMachine(*document, librarySearch, libraries, result.diagnostics);
     addSchemaMessages(*document, result.diagnostics);
     result.diagnostics.sort();
     if (!result.diagnostics.hasErrors()) result.machine = std::move(machine);

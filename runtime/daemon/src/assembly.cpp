@@ -87,18 +87,6 @@ axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave) {
             .actualTorque = input(TorqueActual)};
 }
 
-SimulatedBus::SimulatedBus(const config::MachineConfig& machine, record::PcapngWriter* capture) {
-    std::vector<std::shared_ptr<const wire::DeviceDescription>> devices;
-    for (const fieldbus::SlaveParams& slave : machine.network.slaves) devices.push_back(slave.device);
-    twin_ = std::make_unique<twin::Twin>(machine.twin, std::move(devices), machine.network.cycle);
-    wire::Link* link = &twin_->link();
-    if (capture != nullptr) {
-        tapped_ = std::make_unique<TappedLink>(*link, *capture);
-        link = tapped_.get();
-    }
-    master_ = std::make_unique<fieldbus::ethercat::Master>(machine.network, *link, twin_->clock());
-}
-
 void attachAxes(const config::MachineConfig& machine, fieldbus::ethercat::Master& master,
                 Axes& axes) {
     for (std::size_t i = 0; i < axes.size(); ++i) {

@@ -38,6 +38,7 @@ void ReferenceClock::take(const FrameSet& frames) noexcept {
     const Reply reply = frames.reply(datagram_);
     sample_.valid = reply.served();
     if (!sample_.valid) return;
+    sample_.sent = frames.sentAt();
     std::uint64_t time = wire::load64(reply.data, 0);
     if (!wide_) {
         const auto guess =

@@ -150,6 +150,14 @@ void Segment::run(core::TrueTime until, bool stopAtArrival) noexcept {
     now_ = std::max(now_, until);
 }
 
+core::TrueTime Segment::lastReturn() const noexcept {
+    core::TrueTime last = now_;
+    for (const Journey& journey : journeys_) {
+        last = std::max(last, journey.start + roundTrip_ + journey.length);
+    }
+    return last;
+}
+
 void Segment::step(std::size_t which) noexcept {
     Journey& journey = journeys_[which];
     const std::size_t count = devices_.size();
