@@ -9,15 +9,11 @@
 #include <takt/scheduler/grid.hpp>
 
 #include "axes.hpp"
+#include "machine_control.hpp"
 #include "program_host.hpp"
 #include "recorders.hpp"
 
 namespace takt::daemon {
-
-/// What the cycle is to do beside keeping the bus alive; set between cycles.
-struct CycleOrders {
-    bool runPrograms{false};
-};
 
 /// One beat of the machine, from frame out to books (docs/architecture.md, "One cycle").
 class MachineCycle {
@@ -29,6 +25,7 @@ public:
         scheduler::Grid& grid;
         scheduler::DcLock& dcLock;
         Recorders& recorders;
+        MachineControl& control;
     };
     explicit MachineCycle(const Parts& parts) noexcept : parts_{parts} {}
 

@@ -16,6 +16,7 @@ using fieldbus::ethercat::NetworkState;
 
 constexpr core::Duration OpTimeout = 30s;
 constexpr core::Duration StopTimeout = 10s;
+constexpr core::Duration QuickStopTime = 1s;  ///< for the drives, after StopTimeout
 constexpr core::Duration InitTimeout = 10s;
 
 double seconds(core::Duration duration) { return std::chrono::duration<double>{duration}.count(); }
@@ -34,7 +35,9 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       bus_{machine_, recorders.capture()},
       dcLock_{machine_.scheduler.dcLock, machine_.network.cycle},
       grid_{core::HostTime{}, machine_.network.cycle},
-      cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_}},
+      control_{{machine_, bus_.master(), axes_, programs_}, machine.commands, !options.recordCommands.empty()},
+      server_{{machine_, programs_, control_}, options.socket, options.recordCommands},
+      cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, control_}},
       pace_{!options.fast} {
     attachAxes(machine_, bus_.master(), axes_);
 }
@@ -45,6 +48,7 @@ int MachineRun::execute() {
     grid_ = scheduler::Grid{bus_.master().firstSend(began + machine_.network.cycle), machine_.network.cycle};
     bus_.master().prepare();
     bus_.master().requestOp();
+    enter(Phase::GoingOp);
     while (phase_ != Phase::Over) {
         const scheduler::Beat beat = grid_.wait(bus_.clock());
         cycle_.run(beat, orders_);
@@ -63,6 +67,10 @@ bool MachineRun::bringUp() {
     console_.line(fmt::format("{}: {} devices, {} axes, cycle {} us", machine_.name,
                               machine_.network.slaves.size(), axes_.size(),
                               machine_.network.cycle.count() / 1000));
+    if (options_.socket.empty() && server_.path().filename() != machine_.name + ".sock") {
+        console_.line(fmt::format("control socket {}, since another takt runs a machine of this name",
+                                  server_.path().string()));
+    }
     const auto problems = bus_.master().bringUp([this](std::string_view text) {
         recorders_.drain();
         console_.progress(text);
@@ -77,6 +85,7 @@ bool MachineRun::bringUp() {
 
 void MachineRun::supervise() {
     switch (phase_) {
+        case Phase::BringUp: return;
         case Phase::GoingOp: return superviseGoingOp();
         case Phase::Operating: return superviseOperating();
         case Phase::PoweringOff: return supervisePoweringOff();
@@ -90,6 +99,7 @@ void MachineRun::superviseGoingOp() {
         console_.line(fmt::format("network in OP after {:.3f} s; DC locked, host clock {:+.1f} ppm",
                                   seconds(inPhase()), dcLock_.driftPpm()));
         orders_.runPrograms = !options_.manual;
+        orders_.operating = true;
         return enter(Phase::Operating);
     }
     if (bus_.master().state() == NetworkState::Failed) {
@@ -106,29 +116,44 @@ void MachineRun::superviseGoingOp() {
 
 void MachineRun::superviseOperating() {
     reportEndedPrograms();
+    reportMachineStop();
     const bool allEnded = std::all_of(programs_.begin(), programs_.end(),
                                       [](const ProgramHost& program) { return program.ended(); });
     const bool timeOver = options_.length && inPhase() >= *options_.length;
     if (!(allEnded && !options_.manual) && !timeOver && stop_.count() == 0) return;
     orders_.runPrograms = false;
-    for (axis::Axis& axis : axes_) axis.requestPowerOff();
+    orders_.operating = false;
+    orders_.stopAxes = true;
     enter(Phase::PoweringOff);
 }
 
 void MachineRun::supervisePoweringOff() {
-    if (stop_.count() > 1 && !quickStopped_) {
-        quickStopped_ = true;
-        for (axis::Axis& axis : axes_) axis.quickStop();
-    }
+    if (stop_.count() > 1) quickStopAll();
     const bool allOff = std::all_of(axes_.begin(), axes_.end(),
                                     [](const axis::Axis& axis) { return axis.isDisabled(); });
     if (!allOff && inPhase() < StopTimeout) return;
-    for (const axis::Axis& axis : axes_) {
-        if (axis.isDisabled()) continue;
-        fail(ExitCode::StopTimeout, fmt::format("axis {} did not stop and power off within {} s", axis.name(), StopTimeout / 1s));
+    if (!allOff && !stopTimedOut_) {
+        stopTimedOut_ = true;
+        for (const axis::Axis& axis : axes_) {
+            if (axis.isDisabled()) continue;
+            fail(ExitCode::StopTimeout,
+                 fmt::format("axis {} did not stop and power off within {} s; its drive stops it now", axis.name(),
+                             StopTimeout / 1s));
+        }
+        quickStopAll();
     }
+    // No drive is left alone in motion as long as it may still stop by itself.
+    if (!allOff && inPhase() < StopTimeout + QuickStopTime) return;
     bus_.master().requestInit();
     enter(Phase::LeavingOp);
+}
+
+void MachineRun::quickStopAll() {
+    if (quickStopped_) return;
+    quickStopped_ = true;
+    for (axis::Axis& axis : axes_) {
+        if (!axis.isDisabled()) axis.quickStop();
+    }
 }
 
 void MachineRun::superviseLeavingOp() {
@@ -141,6 +166,7 @@ void MachineRun::superviseLeavingOp() {
 
 void MachineRun::enter(Phase phase) {
     phase_ = phase;
+    orders_.phase = phase;
     phaseBegan_ = now_;
 }
 
@@ -172,6 +198,21 @@ void MachineRun::reportEndedPrograms() {
     }
 }
 
+void MachineRun::reportMachineStop() {
+    const MachineStop& stop = control_.machineStop();
+    const bool changed = stop.active() != stopReported_;
+    stopReported_ = stop.active();
+    if (!changed) return;
+    if (!stop.active()) return console_.line(fmt::format("machine stop reset before cycle {}", now_));
+    const ControlNames& names = control_.names();
+    const StopRecord& record = stop.record();
+    std::string why = describe(record, names.stopInputs, names.programs, names.axes);
+    if (record.cause == StopCause::Program) {
+        why += fmt::format(": {}", programs_[record.source].machine().stopReason());
+    }
+    console_.error(fmt::format("machine stop in cycle {} by {}; axes stop and are switched off", record.cycle, why));
+}
+
 void MachineRun::showProgress() {
     const auto perSecond = static_cast<core::CycleNumber>(1s / machine_.network.cycle);
     if (perSecond == 0 || now_ % perSecond != 0) return;
@@ -185,6 +226,10 @@ void MachineRun::showProgress() {
 }
 
 void MachineRun::conclude() {
+    if (!server_.finish()) {
+        fail(ExitCode::CouldNotRun,
+             fmt::format("{}: not complete; is the disk full?", options_.recordCommands.string()));
+    }
     for (const axis::Axis& axis : axes_) {
         const axis::AxisStatus status = axis.status();
         if (status.state != axis::AxisState::ErrorStop) continue;

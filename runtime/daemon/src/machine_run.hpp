@@ -7,7 +7,9 @@
 
 #include "assembly.hpp"
 #include "console.hpp"
+#include "control_server.hpp"
 #include "loading.hpp"
+#include "machine_control.hpp"
 #include "machine_cycle.hpp"
 #include "pace.hpp"
 #include "stop_request.hpp"
@@ -16,13 +18,14 @@ namespace takt::daemon {
 
 /// The life of one run, from the first frame to INIT:
 ///
-///     GoingOp → Operating → PoweringOff → LeavingOp → Over
+///     BringUp → GoingOp → Operating → PoweringOff → LeavingOp → Over
 ///
 /// The cycle itself is in MachineCycle; between two cycles this class looks at what has become of it and
 /// gives the next orders.
 class MachineRun {
 public:
-    /// All must outlive the object.
+    /// All must outlive the object. \throw std::runtime_error when the control socket or a file of commands
+    /// cannot be had
     MachineRun(const RunOptions& options, LoadedMachine& machine, Recorders& recorders,
                Console& console);
 
@@ -32,7 +35,7 @@ public:
     [[nodiscard]] std::string summary() const;
 
 private:
-    enum class Phase : std::uint8_t { GoingOp, Operating, PoweringOff, LeavingOp, Over };
+    using Phase = RunPhase;
 
     bool bringUp();
     void supervise();
@@ -43,6 +46,8 @@ private:
     void enter(Phase phase);
     void fail(ExitCode code, const std::string& why);
     void reportEndedPrograms();
+    void reportMachineStop();
+    void quickStopAll();
     void showProgress();
     void conclude();
     [[nodiscard]] core::Duration inPhase() const;
@@ -59,14 +64,18 @@ private:
     SimulatedBus bus_;
     scheduler::DcLock dcLock_;
     scheduler::Grid grid_;
+    MachineControl control_;
+    ControlServer server_;
     MachineCycle cycle_;
     Pace pace_;
     CycleOrders orders_;
-    Phase phase_{Phase::GoingOp};
+    Phase phase_{Phase::BringUp};
     core::CycleNumber phaseBegan_{0};
     core::CycleNumber now_{0};
     ExitCode code_{ExitCode::Good};
     bool quickStopped_{false};
+    bool stopTimedOut_{false};
+    bool stopReported_{false};  ///< the present machine stop has been told
 };
 
 }  // namespace takt::daemon

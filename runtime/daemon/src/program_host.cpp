@@ -41,7 +41,7 @@ std::vector<std::string> ProgramHost::start(const Axes& axes, core::Duration cyc
 }
 
 void ProgramHost::cycle(core::CycleNumber cycle, Axes& axes) noexcept {
-    if (ended() || cycle % params_.everyCycles != 0) return;
+    if (ended() || held_ || cycle % params_.everyCycles != 0) return;
     for (std::size_t i = 0; i < axes.size(); ++i) axes[i].openPort(*ports_[i].area);
     call(cycle);
     const bool commandsCount = phase_ == ProgramPhase::Running || phase_ == ProgramPhase::Finished;
@@ -72,6 +72,14 @@ void ProgramHost::call(core::CycleNumber cycle) noexcept {
         end(ProgramPhase::Threw, error.what(), cycle);
     } catch (...) {
         end(ProgramPhase::Threw, "an exception that is not a std::exception", cycle);
+    }
+}
+
+void ProgramHost::hold(Axes& axes) noexcept {
+    if (ended() || held_) return;
+    held_ = true;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        if (ports_[i].used) axes[i].stopByProgramLoss();
     }
 }
 

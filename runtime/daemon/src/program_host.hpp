@@ -39,6 +39,18 @@ public:
     /// Calls the program's `stop` once.
     void stop();
 
+    /// rt. The operator stops the program: it is not called any more and its axes stop on their ramp.
+    void hold(Axes& axes) noexcept;
+    /// rt. It is called again from where it was stopped; its blocks show CommandAborted.
+    void goOn() noexcept { held_ = false; }
+    [[nodiscard]] bool held() const noexcept { return held_; }
+    /// rt. The program has asked for this axis; while it runs nobody else moves it.
+    [[nodiscard]] bool uses(std::size_t axis) const noexcept { return machine_->axes()[axis].asked; }
+    /// rt. The machine as the program sees it: to tell it of a machine stop and to hear it ask for one.
+    [[nodiscard]] program::Machine& machine() noexcept { return *machine_; }
+    [[nodiscard]] const program::Machine& machine() const noexcept { return *machine_; }
+    [[nodiscard]] const std::vector<program::Watch>& watched() const noexcept { return inspector_.watches(); }
+
     [[nodiscard]] ProgramPhase phase() const noexcept { return phase_; }
     [[nodiscard]] bool ended() const noexcept { return phase_ > ProgramPhase::Running; }
     [[nodiscard]] const std::string& name() const noexcept { return params_.name; }
@@ -64,6 +76,7 @@ private:
     std::unique_ptr<program::Machine> machine_;
     program::Inspector inspector_;
     ProgramPhase phase_{ProgramPhase::Waiting};
+    bool held_{false};
     core::CycleNumber calls_{0};
     core::CycleNumber endCycle_{0};
     std::array<char, 200> failure_{};

@@ -37,6 +37,9 @@ struct RunOptions {
     std::filesystem::path trace;            ///< CSV; empty = none
     std::filesystem::path plot;             ///< SVG
     std::filesystem::path capture;          ///< pcapng
+    std::filesystem::path socket;           ///< of the control socket; empty = the usual place
+    std::filesystem::path commands;         ///< replays the commands of this file; empty = none
+    std::filesystem::path recordCommands;   ///< writes the commands taken to this file; empty = none
     bool quiet{false};
 };
 
