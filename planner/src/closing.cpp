@@ -46,7 +46,7 @@ bool closeOnTarget(const Problem& problem, Pieces& pieces) noexcept {
     if (!(kEps * limit * cruise.time > 1e-13 * std::fabs(cruise.velocity))) return false;
     std::size_t index = cruise.index;
     const double left = stateBefore(problem, pieces, index).a.value();
-    if (left != 0.0 && pieces.size < Pieces::Capacity) {
+    if (left != 0.0 && pieces.size < Pieces::capacity) {
         // Shorter than the resolution of any time stamp, so it costs no time.
         pieces.insert(index++, std::fabs(left) / problem.jerk,
                       left > 0.0 ? -problem.jerk : problem.jerk);

@@ -60,7 +60,8 @@ bool isDirect(const Problem& p, double& duration) noexcept {
     if (!(std::fabs(p.vf - p.v0 - gain) <= slack)) return false;
     const double way = time * (p.v0 + time * (2.0 * p.a0 + p.af) * (1.0 / 6.0));
     duration = time;
-    return std::fabs(p.distance - way) <= std::max(p.tolerance + rounding * time, p.nearDistance);
+    return std::fabs(p.distance - way) <=
+           std::max(p.tolerance + rounding * (time + (p.amax - p.amin) / p.jerk), p.nearDistance);
 }
 
 /// The crossings within a stretch on which the distance only rises or only falls.

@@ -81,8 +81,9 @@ ExtremalCurve::Point ExtremalCurve::meeting(double u, double distance) const noe
     // The rounding of the velocities moves the beginning in time, hence in position by `pace` times
     // that.
     const double dc = 4.0 * kEps * (std::fabs(main_.vz) + std::fabs(other_.vz)) * invJerk_;
-    const double uo = std::sqrt(u * u + c_);
-    const double movable = uo * uo > dc ? dc / uo : std::sqrt(dc);
+    // One ramp begins at its start there, so the other one makes up for it.
+    const double free = startsOther(u) ? std::fabs(u) : std::sqrt(u * u + c_);
+    const double movable = free * free > dc ? dc / free : std::sqrt(dc);
     const double pace = rate(u);
     const double room = std::fabs(pace) * movable;
     if (!(std::fabs(missing) <= tolerance(u) + room)) return {0.0, 0.0, 0.0, false};
@@ -235,8 +236,7 @@ ExtremalCurve::Point ExtremalCurve::crossingInLow(double u, double distance) con
     }
     const double missing = distance - at(end).distance;
     if (missing <= 0.0) return point(root(from, end, distance));
-    if (missing <= tolerance(end)) return point(end);
-    return {0.0, 0.0, 0.0, false};
+    return meeting(end, distance);
 }
 
 ExtremalCurve::Point ExtremalCurve::crossingInHigh(double u, double distance) const noexcept {
@@ -256,17 +256,22 @@ void ExtremalCurve::pieces(const Point& p, double sign, Pieces& out) const noexc
     double both = u < 0.0 ? c_ / (uo - u) : 0.0;
     double hold = 0.0;
     double holdOther = 0.0;
+    const double shift = startsOther(p.u) ? 0.0 : p.shift;
+    const double shiftMain = p.shift - shift;
     if (u > main_.full) {
-        hold = (uu - main_.full * main_.full) / main_.full;
+        hold = (uu - main_.full * main_.full) / main_.full + shiftMain;
         u = main_.full;
+    } else {
+        u += 0.5 * shiftMain;
+        both += 0.5 * shiftMain;
     }
     if (uo > other_.full) {
-        holdOther = (uu + c_ - other_.full * other_.full) / other_.full + p.shift;
+        holdOther = (uu + c_ - other_.full * other_.full) / other_.full + shift;
         if (u < 0.0) both = other_.full + u;
         uo = other_.full;
     } else {
-        uo += 0.5 * p.shift;
-        both += 0.5 * p.shift;
+        uo += 0.5 * shift;
+        both += 0.5 * shift;
     }
     const double firstU = mainIsLast_ ? uo : u;
     const double lastU = mainIsLast_ ? u : uo;

@@ -23,7 +23,7 @@ public:
         double cruise;
         double duration;
         bool found;
-        double shift{0.0};  ///< what the other ramp takes longer to make up for rounded velocities
+        double shift{0.0};  ///< what one ramp takes longer to make up for rounded velocities
     };
     struct Value {
         double distance;
@@ -76,6 +76,10 @@ public:
     void pieces(const Point& point, double sign, Pieces& out) const noexcept;
 
 private:
+    /// The other ramp, not the main one, has no first piece at u.
+    [[nodiscard]] bool startsOther(double u) const noexcept {
+        return std::fabs(u) == star_ && u > main_.kt;
+    }
     [[nodiscard]] double rootBothHolding(double distance) const noexcept;
     [[nodiscard]] double bothHold() const noexcept;
     [[nodiscard]] double firstGuess(double lo, const Value& atLo, double hi, const Value& atHi,

@@ -144,7 +144,7 @@ void combine(const Pieces& x, const Pieces& n, double l, Pieces& out) noexcept {
     std::size_t k = 0;
     double leftX = x.size > 0 ? x.time[0] : 0.0;
     double leftN = n.size > 0 ? n.time[0] : 0.0;
-    while (i < x.size && k < n.size && out.size < Pieces::Capacity) {
+    while (i < x.size && k < n.size && out.size < Pieces::capacity) {
         const double step = std::min(leftX, leftN);
         out.add(step, l * x.value[i] + (1.0 - l) * n.value[k]);
         leftX -= step;
@@ -153,10 +153,10 @@ void combine(const Pieces& x, const Pieces& n, double l, Pieces& out) noexcept {
         if (leftN <= 0.0) leftN = ++k < n.size ? n.time[k] : 0.0;
     }
     // One of the two may end some ulps earlier.
-    for (; i < x.size && out.size < Pieces::Capacity; leftX = ++i < x.size ? x.time[i] : 0.0) {
+    for (; i < x.size && out.size < Pieces::capacity; leftX = ++i < x.size ? x.time[i] : 0.0) {
         out.add(leftX, x.value[i]);
     }
-    for (; k < n.size && out.size < Pieces::Capacity; leftN = ++k < n.size ? n.time[k] : 0.0) {
+    for (; k < n.size && out.size < Pieces::capacity; leftN = ++k < n.size ? n.time[k] : 0.0) {
         out.add(leftN, n.value[k]);
     }
 }

@@ -38,12 +38,12 @@ struct Problem {
             -p.amin, -p.amax, p.jerk, p.tolerance, p.nearDistance, p.nearVelocity};
 }
 
-/// Up to `Capacity` pieces of constant jerk (third order) or constant acceleration (second order).
+/// Up to `capacity` pieces of constant jerk (third order) or constant acceleration (second order).
 struct Pieces {
-    static constexpr std::size_t Capacity = 20;
+    static constexpr std::size_t capacity = 20;
 
-    std::array<double, Capacity> time;
-    std::array<double, Capacity> value;
+    std::array<double, capacity> time;
+    std::array<double, capacity> value;
     std::size_t size{0};
 
     /// Pieces of no length are left out; negative lengths are rounding.
@@ -53,7 +53,7 @@ struct Pieces {
         value[size] = what;
         ++size;
     }
-    /// Puts a piece before the one at `index`. \pre size < Capacity
+    /// Puts a piece before the one at `index`. \pre size < capacity
     void insert(std::size_t index, double duration, double what) noexcept {
         for (std::size_t i = size; i > index; --i) {
             time[i] = time[i - 1];

@@ -113,6 +113,19 @@ void ProfileBuilder::scaled(const Profile& line, double share, const State& from
     out.end_ = end;
 }
 
+bool ProfileBuilder::joined(const Profile& first, const Profile& second, Profile& out) noexcept {
+    if (first.size_ + second.size_ > Profile::capacity) return false;
+    out = first;
+    for (std::size_t i = 0; i < second.size_; ++i) {
+        Segment segment = second.segments_[i];
+        segment.start += first.duration_;
+        out.segments_[out.size_++] = segment;
+    }
+    out.duration_ = first.duration_ + second.duration_;
+    out.end_ = second.end_;
+    return true;
+}
+
 void ProfileBuilder::setDuration(double duration, Profile& profile) noexcept {
     profile.duration_ = Seconds{duration};
 }

@@ -20,6 +20,8 @@ public:
     /// First order: the values are velocities.
     static void withVelocities(const State& from, const detail::Pieces& pieces,
                                Profile& out) noexcept;
+    /// One after the other. \return false if they have too many pieces
+    static bool joined(const Profile& first, const Profile& second, Profile& out) noexcept;
     /// The share of an axis in a motion along a straight line.
     static void scaled(const Profile& line, double share, const State& from, const State& end,
                        Profile& out) noexcept;

@@ -104,17 +104,20 @@ std::optional<Seconds> firstTimeAt(const Profile& profile, Position position,
         double from = std::max(0.0, (notBefore - profile[i].start).count());
         if (from > piece.length) continue;
         const double value = (position - profile[i].from.position).count();
-        // Pieces join up to rounding of the positions only.
-        const double slack =
-            4.0 * detail::kEps *
-            (std::fabs(position.count()) + std::fabs(profile[i].from.position.count()));
+        const State& after = i + 1 < profile.size() ? profile[i + 1].from : profile.end();
+        const double next = (after.position - profile[i].from.position).count();
         const Turns turns{piece};
         for (std::size_t k = 0; k < turns.size; ++k) {
             const double to = turns.times[k];
             if (to < from) continue;
             const double low = std::min(piece.at(from), piece.at(to));
             const double high = std::max(piece.at(from), piece.at(to));
-            if (value >= low - slack && value <= high + slack) {
+            // Pieces join up to rounding of positions and times only.
+            const double joint = k + 1 == turns.size ? next : piece.at(to);
+            const double slack = 4.0 * detail::kEps *
+                                 (std::fabs(position.count()) + std::fabs(value) +
+                                  std::fabs(piece.speed(to)) * profile.duration().count());
+            if (value >= std::min(low, joint) - slack && value <= std::max(high, joint) + slack) {
                 const double inside = std::clamp(value, low, high);
                 const double t = low == high ? from : crossing(piece, from, to, inside);
                 return profile[i].start + Seconds{t};

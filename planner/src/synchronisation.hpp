@@ -12,7 +12,7 @@ namespace takt::planner::detail {
 /// The plans of all axes of a request.
 struct Group {
     std::span<const AxisRequest> requests;
-    std::array<AxisPlan, Trajectory::MaxAxes> plans;
+    std::array<AxisPlan, Trajectory::maxAxes> plans;
     double cycle{0.0};
     double minDuration{0.0};
     AxisPlan line;
@@ -30,7 +30,7 @@ std::optional<double> writeTogether(const Group& group, double atLeast, bool ifN
 /// the axis that goes farthest, with the limits of all, and the share of each axis in its way.
 struct Line {
     AxisRequest request;
-    std::array<double, Trajectory::MaxAxes> share;
+    std::array<double, Trajectory::maxAxes> share;
 };
 [[nodiscard]] std::optional<Line> findLine(std::span<const AxisRequest> requests) noexcept;
 

@@ -36,7 +36,7 @@ std::optional<InputFault> checkAll(std::span<const AxisRequest> requests,
 
 Trajectory::Trajectory(std::size_t axes)
     : current_(axes), next_(axes), work_{std::make_unique<detail::Group>()} {
-    assert(axes >= 1 && axes <= MaxAxes);
+    assert(axes >= 1 && axes <= maxAxes);
 }
 
 Trajectory::~Trajectory() = default;

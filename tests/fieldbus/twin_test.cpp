@@ -49,6 +49,18 @@ TEST(MasterOnTwin, BringsThreeDrivesToOp) {
     EXPECT_EQ(counters.framesMalformed + counters.framesForeign + counters.framesLate, 0U);
 }
 
+TEST(MasterOnTwin, BringsDrivesOfAllFamiliesToOpInOneLine) {
+    auto devices = jitteryLine(6);
+    const char* const profiles[] = {"cd300e", "ra", "generic", "ra", "cd300e", "generic"};
+    for (std::size_t i = 0; i < 6; ++i) devices.devices[i].profile = profiles[i];
+    TwinMachine machine{devices, milliseconds{1}};
+    ASSERT_THAT(machine.bringUp(), IsEmpty());
+    ASSERT_TRUE(machine.toOp()) << machine.master().problem();
+    machine.cycle(500);
+    EXPECT_EQ(machine.master().expectedWorkingCounter(), 18);
+    EXPECT_EQ(machine.master().counters().workingCounterErrors, 0U);
+}
+
 TEST(MasterOnTwin, StaysInOpForTenSeconds) {
     TwinMachine machine{jitteryLine(), milliseconds{1}};
     ASSERT_THAT(machine.bringUp(), IsEmpty());

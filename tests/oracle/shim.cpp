@@ -17,8 +17,8 @@ struct Handle {
     explicit Handle(std::size_t axes) : trajectory{axes} {}
 
     planner::Trajectory trajectory;
-    std::array<planner::AxisRequest, planner::Trajectory::MaxAxes> requests{};
-    std::array<planner::State, planner::Trajectory::MaxAxes> states{};
+    std::array<planner::AxisRequest, planner::Trajectory::maxAxes> requests{};
+    std::array<planner::State, planner::Trajectory::maxAxes> states{};
 };
 
 /// Answers of this interface are judged to 1e-8 of SI units, and a generator that is that coarse
@@ -73,7 +73,7 @@ TAKT_EXPORT const char* otg_name(void) {
 }
 
 TAKT_EXPORT void* otg_open(uint32_t dofs, double /*cycle*/) {
-    if (dofs < 1 || dofs > planner::Trajectory::MaxAxes) return nullptr;
+    if (dofs < 1 || dofs > planner::Trajectory::maxAxes) return nullptr;
     return new (std::nothrow) Handle{dofs};
 }
 

@@ -1,9 +1,7 @@
 #include "frame_set.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cstring>
 #include <takt/wire/byte_io.hpp>
 #include <utility>
 
@@ -30,18 +28,10 @@ constexpr bool positionCounts(wire::Command command) noexcept {
     }
 }
 
-/// The first eight bytes of a datagram header: command, index, address, length. In host order,
-/// because they are only ever compared with each other.
-std::uint64_t headWord(const std::uint8_t* header) noexcept {
-    std::uint64_t word = 0;
-    std::memcpy(&word, header, sizeof word);
-    return word;
-}
-
-// Devices change the circulating bit and, in these datagrams, the position.
-constexpr std::array<std::uint8_t, 8> FixedOfOthers{0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xBF};
-constexpr std::array<std::uint8_t, 8> FixedOfPosition{0xFF, 0xFF, 0x00, 0x00,
-                                                      0xFF, 0xFF, 0xFF, 0xBF};
+// Of the first eight bytes of a datagram header (command, index, address, length) devices change
+// the circulating bit and, in some commands, the position.
+constexpr std::uint64_t FixedOfOthers = ~(std::uint64_t{1} << 62);
+constexpr std::uint64_t FixedOfPosition = FixedOfOthers & ~std::uint64_t{0xFFFF'0000};
 
 }  // namespace
 
@@ -74,7 +64,7 @@ void FrameSet::repeat() noexcept {
     if (writer_) finish();
     countUp();
     frameCount_ = keptFrames_;
-    datagrams_.resize(keptDatagrams_);
+    if (datagrams_.size() != keptDatagrams_) datagrams_.resize(keptDatagrams_);
     for (const Sent& sent : datagrams_) {
         frames_[sent.frame].bytes[sent.at + 1U] = indexOf(sent.frame);
     }
@@ -102,7 +92,7 @@ bool FrameSet::openFrame() noexcept {
 }
 
 std::size_t FrameSet::room() const noexcept {
-    if (datagrams_.size() == datagrams_.capacity()) return 0;
+    if (full()) return 0;
     if (writer_) return writer_->room();
     if (!reopenable()) return 0;
     const std::size_t used = datagrams_.back().end() + wire::DatagramOverhead;
@@ -111,8 +101,7 @@ std::size_t FrameSet::room() const noexcept {
 
 DatagramId FrameSet::remember(wire::Command command, wire::DatagramPlace place) noexcept {
     const auto id = static_cast<DatagramId>(datagrams_.size());
-    const std::uint64_t fixed =
-        positionCounts(command) ? headWord(FixedOfPosition.data()) : headWord(FixedOfOthers.data());
+    const std::uint64_t fixed = positionCounts(command) ? FixedOfPosition : FixedOfOthers;
     datagrams_.push_back({fixed, place.offset, static_cast<std::uint16_t>(place.dataOffset()),
                           place.length, static_cast<std::uint8_t>(frameCount_ - 1)});
     return id;
@@ -173,7 +162,7 @@ FrameSet::Verdict FrameSet::judge(const wire::Frame& frame, std::size_t& which) 
     std::uint64_t different = 0;
     for (const Sent* datagram = first; datagram <= last; ++datagram) {
         different |=
-            (headWord(&got[datagram->at]) ^ headWord(&sent[datagram->at])) & datagram->fixed;
+            (wire::load64(got, datagram->at) ^ wire::load64(sent, datagram->at)) & datagram->fixed;
     }
     return different == 0 ? Verdict::Accepted : Verdict::Malformed;
 }

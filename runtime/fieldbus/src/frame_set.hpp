@@ -62,6 +62,8 @@ public:
     /// rt. Data bytes that a further datagram may have; 0 when no datagram can be added.
     [[nodiscard]] std::size_t room() const noexcept;
     [[nodiscard]] bool empty() const noexcept { return datagrams_.empty(); }
+    /// rt. No further datagram can be added, whatever room the frames have.
+    [[nodiscard]] bool full() const noexcept { return datagrams_.size() == datagrams_.capacity(); }
 
     /// rt. Data are zeros until filled through `data`. \pre length <= room()
     DatagramId append(wire::Command command, std::uint16_t adp, std::uint16_t ado,

@@ -11,7 +11,7 @@ namespace {
 namespace reg = wire::reg;
 
 constexpr std::uint8_t RegisterTries = 5;
-constexpr std::uint8_t StatusTries = 3;
+constexpr std::uint8_t ReadTries = 3;
 constexpr std::uint32_t DifferenceMask = 0x7FFF'FFFF;  ///< sign-magnitude: the sign is for display
 constexpr std::uint32_t NoDictionary = 0x0800'0023;
 
@@ -60,7 +60,9 @@ void SlaveAgent::wantStatus() noexcept {
 }
 
 void SlaveAgent::wantDifference() noexcept {
+    if (differenceWanted_) return;
     differenceWanted_ = true;
+    differenceTries_ = 0;
     wake();
 }
 
@@ -160,10 +162,7 @@ void SlaveAgent::take(core::HostTime now, const Reply& reply) noexcept {
             takeStatus(reply);
             break;
         case Job::Difference:
-            if (reply.served()) {
-                difference_ = core::Duration{wire::load32(reply.data, 0) & DifferenceMask};
-                differenceWanted_ = false;
-            }
+            takeDifference(reply);
             break;
         case Job::Walk:
             walker_.take(now, reply);
@@ -187,9 +186,19 @@ void SlaveAgent::takeStatus(const Reply& reply) noexcept {
         al_ = decodeAlStatus(reply.data);
         answers_ = true;
         statusWanted_ = false;
-    } else if (++statusTries_ >= StatusTries) {
+    } else if (++statusTries_ >= ReadTries) {
         answers_ = false;
         statusWanted_ = false;
+    }
+}
+
+void SlaveAgent::takeDifference(const Reply& reply) noexcept {
+    if (reply.served()) {
+        difference_ = core::Duration{wire::load32(reply.data, 0) & DifferenceMask};
+        differenceWanted_ = false;
+    } else if (++differenceTries_ >= ReadTries) {
+        difference_.reset();
+        differenceWanted_ = false;
     }
 }
 

@@ -71,7 +71,7 @@ public:
     /// The slave answered the last time it was asked for its AL status.
     [[nodiscard]] bool answers() const noexcept { return answers_; }
     [[nodiscard]] bool statusPending() const noexcept { return statusWanted_; }
-    /// Magnitude of 0x092C as last read; empty: not read since reset.
+    /// Magnitude of 0x092C as last read; empty: the slave did not tell.
     [[nodiscard]] const std::optional<core::Duration>& difference() const noexcept {
         return difference_;
     }
@@ -103,6 +103,7 @@ private:
     bool nextOfScript(core::HostTime now, Request& request) noexcept;
     bool nextOfMailbox(core::HostTime now, Request& request) noexcept;
     void takeStatus(const Reply& reply) noexcept;
+    void takeDifference(const Reply& reply) noexcept;
     void takeRegister(const Reply& reply) noexcept;
     void afterMailbox() noexcept;
     void endStateStep() noexcept;
@@ -134,6 +135,7 @@ private:
     bool statusWanted_{false};
     std::uint8_t statusTries_{0};
     bool differenceWanted_{false};
+    std::uint8_t differenceTries_{0};
     bool userRequest_{false};  ///< the pending SDO is of the user, not of the script
     core::ObjectReply userReply_{};
 };

@@ -200,13 +200,14 @@ void Segment::finish(std::size_t which) noexcept {
 }
 
 void Segment::fire() noexcept {
-    const EventQueue::Event event = events_.pop();
+    const EventQueue::Event event = events_.begin();
     SimulatedDevice& device = *devices_[event.device];
     if (event.kind == EventKind::Sync0) {
         device.controller.dc()->fireSync0(now_);
         if (sync0Observer_) sync0Observer_(event.device, now_);
     }
     device.application.onEvent(event.kind, now_);
+    events_.done();
 }
 
 core::TrueTime Segment::take(wire::Frame& to) noexcept {

@@ -45,6 +45,7 @@ enum class PlanError : std::uint8_t {
     InvalidLimits,  ///< a limit is zero or has the wrong sign
     TargetNotViable,  ///< target velocity or acceleration outside the limits, or not to be held
     NoSolution,       ///< numerically without an answer; never for a viable problem
+    OutOfRange,       ///< a position range would have to be left (planWithin)
 };
 
 /// The number of a request that an error is about.
@@ -82,12 +83,12 @@ struct Segment {
     core::Jerk jerk;
 };
 
-/// Motion as up to `Capacity` pieces of constant jerk. Before its beginning a profile is its first
+/// Motion as up to `capacity` pieces of constant jerk. Before its beginning a profile is its first
 /// state; after its end it goes on with the target's velocity and acceleration (a target at rest
 /// stays). Trivially copyable, no heap.
 class Profile {
 public:
-    static constexpr std::size_t Capacity = 20;
+    static constexpr std::size_t capacity = 20;
 
     /// A profile of no duration that stays in `state`.
     static Profile holding(State state) noexcept;
@@ -100,7 +101,7 @@ public:
 private:
     friend class ProfileBuilder;
 
-    std::array<Segment, Capacity> segments_{};
+    std::array<Segment, capacity> segments_{};
     std::uint8_t size_{0};
     core::Seconds duration_{};
     State end_{};

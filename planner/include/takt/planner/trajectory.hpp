@@ -51,9 +51,9 @@ struct Timing {
 ///     trajectory.sample(time, states);                        // once per cycle
 class Trajectory {
 public:
-    static constexpr std::size_t MaxAxes = 16;
+    static constexpr std::size_t maxAxes = 16;
 
-    /// \pre 1 <= axes <= MaxAxes
+    /// \pre 1 <= axes <= maxAxes
     explicit Trajectory(std::size_t axes);
     ~Trajectory();
     Trajectory(Trajectory&&) noexcept;

@@ -48,7 +48,7 @@ inline constexpr const char* CompilerTag = "gcc";
             takt::program::Version,                                                               \
             takt::program::CompilerTag,                                                           \
             takt::program::SanitizerTag,                                                          \
-            []() -> takt::program::Program* { return new Class; },                                \
+            []() -> takt::program::Program* { return new Class; }, /* NOLINT: a class name takes none */ \
             [](takt::program::Program* program) { delete program; }};                             \
         return &entry;                                                                            \
     }
