@@ -41,7 +41,8 @@ private:
 class OnAThread : public testing::Test {
 protected:
     OnAThread() {
-        program::ProgramPtr program{new Scripted{script_}, [](program::Program* p) { delete p; }};
+        program::ProgramPtr program{new Scripted{script_},
+                                    program::ProgramDeleter{nullptr, [](program::Program* p) { delete p; }}};
         work_ = std::make_unique<ProgramWork>(std::move(program), 0, std::uint16_t{1});
         work_->setMachine(std::make_unique<program::Machine>(std::vector<program::Machine::NamedAxis>{}, 1ms));
     }
