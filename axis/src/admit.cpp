@@ -195,6 +195,7 @@ void takeControl(AxisView& view, const Command& command) noexcept {
 void notePowerOff(AxisView& view) noexcept {
     const bool wasRequested = view.powerRequested;
     view.powerRequested = false;
+    if (!view.machineStop) view.needsEnableEdge = false;
     if (!wasRequested || view.state == AxisState::Disabled || view.state == AxisState::ErrorStop) {
         return;
     }
@@ -239,6 +240,10 @@ ErrorId checkTarget(const AxisTraits& traits, core::Position target) noexcept {
 
 core::Result<Command, ErrorId> admit(const AxisView& view, const Command& request) noexcept {
     Command command = request;
+    const bool wantsPower = command.kind == CommandKind::PowerOn;
+    const bool barred = view.machineStop ? wantsPower || isMotion(command.kind)
+                                         : wantsPower && view.needsEnableEdge;
+    if (barred) return ErrorId::MachineStopped;
     if (isMotion(command.kind)) {
         if (const ErrorId bad = admitMotion(view, command); bad != ErrorId::None) return bad;
     }

@@ -10,16 +10,22 @@ void MC_Power::operator()(axis::AxisRef axis) noexcept {
         return;
     }
     axis::AxisPort& port = axis.port();
-    if (Enable != port.view().powerRequested) {
+    // After a machine stop the axis waits to see Enable low, though it is off already.
+    const bool acknowledge = !Enable && port.view().needsEnableEdge && !port.view().machineStop;
+    if (Enable != port.view().powerRequested || acknowledge) {
         axis::Command command;
         command.kind = Enable ? axis::CommandKind::PowerOn : axis::CommandKind::PowerOff;
-        // A full list is the only refusal; the level asks again in the next cycle.
+        // Refused while the list is full or a machine stop bars it; the level asks again.
         static_cast<void>(port.submit(command));
     }
     const axis::AxisView& view = port.view();
     Status = view.powered;
-    Error = Enable && view.state == axis::AxisState::ErrorStop && !view.powered;
-    ErrorID = Error ? view.error.id : axis::ErrorId::None;
+    const bool failed = Enable && view.state == axis::AxisState::ErrorStop && !view.powered;
+    const bool barred = Enable && !view.powered && (view.machineStop || view.needsEnableEdge);
+    Error = failed || barred;
+    ErrorID = axis::ErrorId::None;
+    if (barred) ErrorID = axis::ErrorId::MachineStopped;
+    if (failed) ErrorID = view.error.id;
     Valid = Enable && !Error && view.inputsValid;
 }
 

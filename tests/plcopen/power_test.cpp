@@ -114,3 +114,27 @@ TEST(Reset, ShowsTheCauseThatIsStillThere) {
     EXPECT_EQ(reset.ErrorID, ErrorId::LagExceeded);
     EXPECT_TRUE(rig.status.ErrorStop);
 }
+
+TEST(Power, SaysThatTheMachineStopBarsItUntilEnableFallsAndRisesAfterTheReset) {
+    BlockRig rig;
+    rig.start();
+    const auto stopped = [&rig] {
+        rig.call();
+        rig.x.machineStop();
+        return rig.x.isDisabled();
+    };
+    for (int i = 0; i < 100 && !stopped(); ++i) {
+    }
+    ASSERT_TRUE(rig.x.isDisabled());
+    rig.call();
+    EXPECT_EQ(rig.power.ErrorID, ErrorId::MachineStopped);
+    rig.x.releaseMachineStop();
+    rig.calls(50);
+    EXPECT_EQ(rig.power.ErrorID, ErrorId::MachineStopped);  // the level alone switches nothing on
+    EXPECT_FALSE(rig.power.Status);
+    rig.power.Enable = false;
+    rig.call();
+    EXPECT_FALSE(rig.power.Error);
+    rig.power.Enable = true;
+    EXPECT_TRUE(rig.callUntil([&] { return rig.power.Status; }));
+}

@@ -32,6 +32,13 @@ std::uint64_t timeIn(wire::Frame& frame) {
     return number(cursor.datagram().data());
 }
 
+/// Devices whose clocks are exact.
+TwinParams exactLine() {
+    TwinParams params = lineOf(2, "generic");
+    for (TwinDeviceParams& device : params.devices) device.clockPpm = 0.0;
+    return params;
+}
+
 class Door : public testing::Test {
 protected:
     std::uint64_t timeAt(core::TrueTime arrival) {
@@ -41,7 +48,7 @@ protected:
         return timeIn(back[0]);
     }
 
-    TwinParams params_{lineOf(2, "generic")};
+    TwinParams params_{exactLine()};
     Twin twin_{params_, descriptionsFor(params_), milliseconds{1}};
 };
 

@@ -15,6 +15,7 @@
 
 #include "bus_verbs.hpp"
 #include "new_project.hpp"
+#include "remote.hpp"
 
 namespace takt::cli {
 
@@ -69,6 +70,9 @@ void addRun(CLI::App& app, RunArguments& run) {
     command->add_option("--pcap", options.capture, "write every frame to this pcapng file");
     command->add_option("--program-watchdog", run.watchdog,
                         "simulated: end the run when a program does not come back for so long (10s)");
+    command->add_option("--socket", options.socket, "path of the control socket");
+    command->add_option("--commands", options.commands, "replay the operator's commands of this file, cycle by cycle");
+    command->add_option("--record-commands", options.recordCommands, "write the operator's commands to this file");
     command->add_flag("--quiet", options.quiet, "print errors only");
 }
 
@@ -141,6 +145,72 @@ std::optional<int> runBusVerb(const CLI::App& app, BusArguments& arguments) {
     return std::nullopt;
 }
 
+/// What is asked of a running machine.
+struct RemoteArguments {
+    WatchOptions watch;
+    EventsOptions events;
+    JogOptions jog;
+    OrderOptions order;
+    std::string powerState;
+    std::string programAction;
+};
+
+void addRemoteOptions(CLI::App& command, RemoteOptions& options, bool table) {
+    command.add_option("--socket", options.socket, "control socket of the machine; needed when several run");
+    if (table) command.add_flag("--json", options.json, "one JSON object in each line");
+}
+
+void addTables(CLI::App& app, RemoteArguments& remote) {
+    auto* watch = app.add_subcommand("watch", "show axes, network and programs of the running machine");
+    watch->add_flag("--once", remote.watch.once, "print once and end");
+    addRemoteOptions(*watch, remote.watch.remote, true);
+    auto* events = app.add_subcommand("events", "show what has happened in the running machine");
+    events->add_flag("--follow,-f", remote.events.follow, "go on with what happens now");
+    addRemoteOptions(*events, remote.events.remote, true);
+    auto* jog = app.add_subcommand("jog", "move an axis of the running machine step by step with the keys");
+    jog->add_option("axis", remote.jog.axis, "name of the axis")->required();
+    jog->add_option("--distance", remote.jog.distance, "of one step, in units of the axis; 1 if not told")
+        ->check(CLI::PositiveNumber);
+    jog->add_option("--velocity", remote.jog.velocity, "in units of the axis per second; 10 if not told")
+        ->check(CLI::PositiveNumber);
+    addRemoteOptions(*jog, remote.jog.remote, false);
+}
+
+void addOrders(CLI::App& app, RemoteArguments& remote) {
+    auto& request = remote.order.request;
+    auto* power = app.add_subcommand("power", "switch an axis of the running machine on or off");
+    power->add_option("state", remote.powerState, "on or off")->required()->check(CLI::IsMember({"on", "off"}));
+    power->add_option("axis", request.axis, "name of the axis")->required();
+    auto* reset = app.add_subcommand("reset", "clear the error of an axis; without one, reset the machine stop");
+    reset->add_option("axis", request.axis, "name of the axis");
+    auto* home = app.add_subcommand("home", "find the reference of an axis; ends with ^C, and the axis stops");
+    home->add_option("axis", request.axis, "name of the axis")->required();
+    auto* stop = app.add_subcommand("stop", "stop the running machine: axes ramp down and are switched off");
+    auto* program = app.add_subcommand("program", "stop a program of the running machine, or let it go on");
+    program->add_option("action", remote.programAction, "start or stop")
+        ->required()
+        ->check(CLI::IsMember({"start", "stop"}));
+    program->add_option("name", request.program, "name of the program")->required();
+    for (CLI::App* command : {power, reset, home, stop, program}) {
+        addRemoteOptions(*command, remote.order.remote, true);
+    }
+}
+
+/// \return the exit code, or nothing when the line asks for something else
+std::optional<int> runRemote(const CLI::App& app, RemoteArguments& remote) {
+    std::string& verb = remote.order.request.verb;
+    if (app.got_subcommand("watch")) return runWatch(remote.watch);
+    if (app.got_subcommand("events")) return runEvents(remote.events);
+    if (app.got_subcommand("jog")) return runJog(remote.jog);
+    if (app.got_subcommand("power")) verb = "power-" + remote.powerState;
+    if (app.got_subcommand("reset")) verb = remote.order.request.axis.empty() ? "reset-stop" : "reset";
+    if (app.got_subcommand("home")) verb = "home";
+    if (app.got_subcommand("stop")) verb = "stop";
+    if (app.got_subcommand("program")) verb = "program-" + remote.programAction;
+    if (verb.empty()) return std::nullopt;
+    return runOrder(remote.order);
+}
+
 }  // namespace
 
 int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> programs) {
@@ -148,7 +218,8 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
     app.set_version_flag("--version", std::string{"takt "} + program::Version);
     app.require_subcommand(1);
     app.footer("exit codes of run: 0 done, 1 configuration refused, 2 could not run, 3 axis or program failed,\n"
-               "  4 program abandoned, 5 stop time-out, 128+n signal n; of check: 0 good, 1 errors, 2 could not run");
+               "  4 program abandoned, 5 stop time-out, 128+n signal n; of check: 0 good, 1 errors, 2 could not run;\n"
+               "  of commands to a running machine: 0 done, 1 refused or failed, 2 no machine");
 
     RunArguments runArguments;
     daemon::RunOptions checkOptions;
@@ -160,6 +231,9 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
     addBusVerbs(app, busArguments);
     daemon::SimOptions simOptions;
     addSim(app, simOptions);
+    RemoteArguments remote;
+    addTables(app, remote);
+    addOrders(app, remote);
     try {
         app.parse(argc, argv);
         if (!runArguments.length.empty()) runArguments.options.length = parseLength("--for", runArguments.length);
@@ -176,6 +250,7 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
         return newProject(newOptions);
     }
     if (const auto code = runBusVerb(app, busArguments)) return *code;
+    if (const auto code = runRemote(app, remote)) return *code;
     if (app.got_subcommand("check")) {
         checkOptions.searchDirs.push_back(executableFolder());
         return daemon::check(checkOptions);

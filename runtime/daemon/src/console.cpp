@@ -8,31 +8,40 @@
 
 namespace takt::daemon {
 
+namespace {
+
+/// A closed terminal or a full disk behind the output must not throw into a running machine.
+void put(std::FILE* file, std::string_view text) {
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), file));
+}
+
+}  // namespace
+
 Console::Console(bool quiet) : quiet_{quiet}, terminal_{::isatty(STDOUT_FILENO) == 1} {}
 
 void Console::line(std::string_view text) {
     if (quiet_) return;
     clearProgress();
-    fmt::print("{}\n", text);
+    put(stdout, fmt::format("{}\n", text));
     std::fflush(stdout);
 }
 
 void Console::error(std::string_view text) {
     clearProgress();
     std::fflush(stdout);
-    fmt::print(stderr, "{}\n", text);
+    put(stderr, fmt::format("{}\n", text));
 }
 
 void Console::progress(std::string_view text) {
     if (quiet_ || !terminal_) return;
-    fmt::print("\r\033[K{}", text);
+    put(stdout, fmt::format("\r\033[K{}", text));
     std::fflush(stdout);
     progressShown_ = true;
 }
 
 void Console::clearProgress() {
     if (!progressShown_) return;
-    fmt::print("\r\033[K");
+    put(stdout, "\r\033[K");
     progressShown_ = false;
 }
 

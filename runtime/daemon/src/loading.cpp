@@ -8,6 +8,9 @@
 #include <takt/config/load_machine.hpp>
 #include <takt/fieldbus/bus_timing.hpp>
 
+#include "command_file.hpp"
+#include "machine_control.hpp"
+
 namespace takt::daemon {
 
 namespace {
@@ -68,6 +71,10 @@ std::optional<LoadedMachine> loadMachine(const RunOptions& options, std::vector<
         problems.push_back(fmt::format("{}: error: no program; do: name one with <Program> or --program, or "
                                        "run with --manual",
                                        machine.config.file));
+    }
+    if (!options.commands.empty()) {
+        const ControlNames names = controlNames(machine.config, machine.programs);
+        machine.commands = readCommands(options.commands, names, problems);
     }
     for (const std::string& problem : problems) console.error(problem);
     if (!problems.empty()) return std::nullopt;

@@ -8,6 +8,7 @@
 
 #include "assembly.hpp"
 #include "console.hpp"
+#include "control_command.hpp"
 
 namespace takt::daemon {
 
@@ -17,6 +18,7 @@ struct LoadedMachine {
     config::MachineConfig config;
     Axes axes;
     std::vector<ProgramHost> programs;
+    std::vector<TakenCommand> commands;  ///< to be replayed
 };
 
 /// Reads the machine file and all it names, loads the programs and lets each one start. Everything that

@@ -12,14 +12,17 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
     const core::HostTime replied = parts_.clock.now();
     followReferenceClock(beat);
     for (axis::Axis& axis : parts_.axes) axis.readInputs(beat.number);
+    parts_.control.beforePrograms(beat.number, orders);
     if (orders.runPrograms) {
         for (ProgramHost& program : parts_.programs) program.cycle(beat.number, parts_.axes);
     }
+    parts_.control.afterPrograms(beat.number, orders);
     const core::HostTime computed = parts_.clock.now();
     for (axis::Axis& axis : parts_.axes) axis.step();
     for (axis::Axis& axis : parts_.axes) axis.writeOutputs();
     parts_.master.prepare();
     parts_.recorders.row(beat.number, parts_.axes);
+    parts_.control.publish(beat.number, orders);
     keepBooks(beat, replied, computed);
 }
 

@@ -10,15 +10,11 @@
 
 #include "axes.hpp"
 #include "cycle_statistics.hpp"
+#include "machine_control.hpp"
 #include "program_host.hpp"
 #include "recorders.hpp"
 
 namespace takt::daemon {
-
-/// What the cycle is to do beside keeping the bus alive; set between cycles.
-struct CycleOrders {
-    bool runPrograms{false};
-};
 
 /// One beat of the machine, from frame out to books (docs/architecture.md, "One cycle").
 class MachineCycle {
@@ -30,6 +26,7 @@ public:
         scheduler::Grid& grid;
         scheduler::DcLock& dcLock;
         Recorders& recorders;
+        MachineControl& control;
         core::ClockSource& clock;
         core::Duration length;  ///< of a cycle
     };

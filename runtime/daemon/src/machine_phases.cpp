@@ -15,13 +15,13 @@ void MachineRun::oneCycle() noexcept {
     cycle_.run(beat, orders_);
     now_ = beat.number + 1;
     const core::CycleGuard guard;
-    lights_.update(now_, axes_);
     superviseOverruns(beat);
     supervise();
 }
 
 void MachineRun::supervise() noexcept {
     switch (phase_) {
+        case Phase::BringUp: return;
         case Phase::GoingOp: return superviseGoingOp();
         case Phase::Operating: return superviseOperating();
         case Phase::PoweringOff: return supervisePoweringOff();
@@ -37,17 +37,12 @@ void MachineRun::superviseOverruns(const scheduler::Beat& beat) noexcept {
     const bool moving = phase_ == Phase::Operating || phase_ == Phase::PoweringOff;
     if (!moving || verdict == scheduler::OverrunVerdict::Fine) return;
     if (verdict == scheduler::OverrunVerdict::DriveStop && !quickStopped_) {
-        quickStopped_ = true;
-        for (axis::Axis& axis : axes_) axis.quickStop();
         fail(ExitCode::MachineFault, RunNotice::Kind::DrivesStopped);
+        quickStopAll();
     } else if (phase_ == Phase::Operating) {
-        for (axis::Axis& axis : axes_) axis.stopByProgramLoss();
-        stopFirst_ = true;
         fail(ExitCode::MachineFault, RunNotice::Kind::StoppedOnPath);
     }
-    if (phase_ != Phase::Operating) return;
-    orders_.runPrograms = false;
-    enter(Phase::PoweringOff);
+    if (phase_ == Phase::Operating) endOperation();
 }
 
 void MachineRun::superviseGoingOp() noexcept {
@@ -55,6 +50,7 @@ void MachineRun::superviseGoingOp() noexcept {
     if (state == NetworkState::Op) {
         note(RunNotice::Kind::ReachedOp);
         orders_.runPrograms = !options_.manual;
+        orders_.operating = true;
         return enter(Phase::Operating);
     }
     if (state == NetworkState::Failed) {
@@ -71,33 +67,45 @@ void MachineRun::superviseGoingOp() noexcept {
 
 void MachineRun::superviseOperating() noexcept {
     noteEndedPrograms();
+    noteMachineStop();
     const bool allEnded = std::all_of(programs_.begin(), programs_.end(),
                                       [](const ProgramHost& program) { return program.ended(); });
     const bool timeOver = options_.length && inPhase() >= *options_.length;
-    if (!(allEnded && !options_.manual) && !timeOver && stop_.count() == 0) return;
+    if ((allEnded && !options_.manual) || timeOver || stop_.count() > 0) endOperation();
+}
+
+/// From now on every axis ramps down and is switched off.
+void MachineRun::endOperation() noexcept {
     orders_.runPrograms = false;
-    for (axis::Axis& axis : axes_) axis.requestPowerOff();
+    orders_.operating = false;
+    orders_.stopAxes = true;
     enter(Phase::PoweringOff);
 }
 
 void MachineRun::supervisePoweringOff() noexcept {
-    if (stop_.count() > 1 && !quickStopped_) {
-        quickStopped_ = true;
-        for (axis::Axis& axis : axes_) axis.quickStop();
-    }
-    const auto rests = [](const axis::Axis& axis) { return axis.isStopped(); };
-    if (stopFirst_ && std::all_of(axes_.begin(), axes_.end(), rests)) {
-        stopFirst_ = false;
-        for (axis::Axis& axis : axes_) axis.requestPowerOff();
-    }
+    if (stop_.count() > 1) quickStopAll();
     const bool allOff = std::all_of(axes_.begin(), axes_.end(),
                                     [](const axis::Axis& axis) { return axis.isDisabled(); });
     if (!allOff && inPhase() < StopTimeout) return;
-    for (std::size_t i = 0; i < axes_.size(); ++i) {
-        if (!axes_[i].isDisabled()) fail(ExitCode::StopTimeout, RunNotice::Kind::AxisNotStopped, i);
+    if (!allOff && !stopTimedOut_) {
+        stopTimedOut_ = true;
+        for (std::size_t i = 0; i < axes_.size(); ++i) {
+            if (!axes_[i].isDisabled()) fail(ExitCode::StopTimeout, RunNotice::Kind::AxisNotStopped, i);
+        }
+        quickStopAll();
     }
+    // No drive is left alone in motion as long as it may still stop by itself.
+    if (!allOff && inPhase() < StopTimeout + QuickStopTime) return;
     bus_.master().requestInit();
     enter(Phase::LeavingOp);
+}
+
+void MachineRun::quickStopAll() noexcept {
+    if (quickStopped_) return;
+    quickStopped_ = true;
+    for (axis::Axis& axis : axes_) {
+        if (!axis.isDisabled()) axis.quickStop();
+    }
 }
 
 void MachineRun::superviseLeavingOp() noexcept {
@@ -110,6 +118,7 @@ void MachineRun::superviseLeavingOp() noexcept {
 
 void MachineRun::enter(Phase phase) noexcept {
     phase_ = phase;
+    orders_.phase = phase;
     phaseBegan_ = now_;
 }
 
@@ -119,7 +128,7 @@ void MachineRun::fail(ExitCode code, RunNotice::Kind kind, std::size_t index) no
 }
 
 void MachineRun::note(RunNotice::Kind kind, std::size_t index, std::uint64_t number) noexcept {
-    notices_.push({kind, index, now_, inPhase(), number});
+    notices_.push({.kind = kind, .index = index, .cycle = now_, .time = inPhase(), .number = number});
 }
 
 void MachineRun::noteEndedPrograms() noexcept {
@@ -131,6 +140,14 @@ void MachineRun::noteEndedPrograms() noexcept {
         if (phase == ProgramPhase::Finished || code_ != ExitCode::Good) continue;
         code_ = phase == ProgramPhase::Abandoned ? ExitCode::ProgramAbandoned : ExitCode::MachineFault;
     }
+}
+
+void MachineRun::noteMachineStop() noexcept {
+    const MachineStop& stop = control_.machineStop();
+    if (stop.active() == stopNoted_) return;
+    stopNoted_ = stop.active();
+    const auto kind = stopNoted_ ? RunNotice::Kind::MachineStopped : RunNotice::Kind::MachineStopReset;
+    notices_.push({.kind = kind, .cycle = now_, .stop = stop.record()});
 }
 
 core::Duration MachineRun::inPhase() const noexcept {

@@ -65,12 +65,13 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       dcLock_{lockFor(options, machine_), machine_.network.cycle},
       grid_{core::HostTime{}, machine_.network.cycle},
       overruns_{machine_.scheduler.overruns},
-      cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, bus_.clock(),
+      control_{{machine_, bus_.master(), axes_, programs_}, machine.commands, !options.recordCommands.empty()},
+      server_{{machine_, programs_, control_}, options.socket, options.recordCommands},
+      cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, control_, bus_.clock(),
               machine_.network.cycle}},
       pace_{!options.fast && options.interface.empty()},
       notices_{NoticeRoom},
-      lights_{axes_.size()},
-      reporter_{machine_, programs_, bus_.master(), console} {
+      reporter_{machine_, programs_, bus_.master(), control_.names(), console} {
     attachAxes(machine_, bus_.master(), axes_);
 }
 
@@ -91,6 +92,10 @@ bool MachineRun::bringUp() {
                               machine_.network.slaves.size(), axes_.size(),
                               machine_.network.cycle.count() / 1000, onMachine() ? ", interface " : "",
                               options_.interface));
+    if (options_.socket.empty() && server_.path().filename() != machine_.name + ".sock") {
+        console_.line(fmt::format("control socket {}, since another takt runs a machine of this name",
+                                  server_.path().string()));
+    }
     const auto problems = bus_.master().bringUp([this](std::string_view text) {
         recorders_.drain();
         console_.progress(text);
@@ -109,6 +114,7 @@ void MachineRun::begin() {
     grid_ = scheduler::Grid{bus_.master().firstSend(soon), machine_.network.cycle};
     bus_.master().prepare();
     bus_.master().requestOp();
+    enter(Phase::GoingOp);
 }
 
 void MachineRun::runInline() {
@@ -181,10 +187,14 @@ void MachineRun::keepHouse(bool cycleRests) {
         return true;
     });
     recorders_.drain();
-    reporter_.progress(lights_);
+    reporter_.progress(control_.board());
 }
 
 void MachineRun::conclude() {
+    if (!server_.finish()) {
+        console_.error(fmt::format("{}: not complete; is the disk full?", options_.recordCommands.string()));
+        if (code_ == ExitCode::Good) code_ = ExitCode::CouldNotRun;
+    }
     if (reporter_.tellAxisErrors(axes_) && code_ == ExitCode::Good) code_ = ExitCode::MachineFault;
     const double simulated = static_cast<double>(now_) * seconds(machine_.network.cycle);
     const double wall = seconds(pace_.elapsed());
@@ -208,7 +218,7 @@ void MachineRun::tellStatistics() {
 }
 
 std::string MachineRun::summary() const {
-    return fmt::format("{} cycles of {} us on {}", lights_.cycle(), machine_.network.cycle.count() / 1000,
+    return fmt::format("{} cycles of {} us on {}", control_.board().run.read().cycle + 1, machine_.network.cycle.count() / 1000,
                        onMachine() ? options_.interface : "the simulated machine");
 }
 

@@ -11,7 +11,9 @@
 #include "assembly.hpp"
 #include "bus.hpp"
 #include "console.hpp"
+#include "control_server.hpp"
 #include "loading.hpp"
+#include "machine_control.hpp"
 #include "machine_cycle.hpp"
 #include "pace.hpp"
 #include "program_watchdog.hpp"
@@ -24,7 +26,7 @@ namespace takt::daemon {
 
 /// The life of one run, from the first frame to INIT:
 ///
-///     GoingOp → Operating → PoweringOff → LeavingOp → Over
+///     BringUp → GoingOp → Operating → PoweringOff → LeavingOp → Over
 ///
 /// The cycle itself is in MachineCycle; after each cycle this class looks at what has become of it and
 /// gives the next orders, still in the cycle's thread and by its rules. What people should know leaves as
@@ -32,7 +34,8 @@ namespace takt::daemon {
 /// thread of its own and the calling one keeps house: prints, writes files.
 class MachineRun {
 public:
-    /// All must outlive the object. \throw std::runtime_error when the network cannot be had
+    /// All must outlive the object. \throw std::runtime_error when the network, the control socket
+    /// or a file of commands cannot be had
     MachineRun(const RunOptions& options, LoadedMachine& machine, Recorders& recorders,
                Console& console);
 
@@ -42,7 +45,7 @@ public:
     [[nodiscard]] std::string summary() const;
 
 private:
-    enum class Phase : std::uint8_t { GoingOp, Operating, PoweringOff, LeavingOp, Over };
+    using Phase = RunPhase;
 
     [[nodiscard]] bool onMachine() const noexcept { return !options_.interface.empty(); }
     bool bringUp();
@@ -66,6 +69,9 @@ private:
     void fail(ExitCode code, RunNotice::Kind kind, std::size_t index = 0) noexcept;
     void note(RunNotice::Kind kind, std::size_t index = 0, std::uint64_t number = 0) noexcept;
     void noteEndedPrograms() noexcept;
+    void noteMachineStop() noexcept;
+    void endOperation() noexcept;
+    void quickStopAll() noexcept;
     [[nodiscard]] core::Duration inPhase() const noexcept;
     [[nodiscard]] int exitCode() const;
 
@@ -81,19 +87,21 @@ private:
     scheduler::DcLock dcLock_;
     scheduler::Grid grid_;
     scheduler::OverrunGuard overruns_;
+    MachineControl control_;
+    ControlServer server_;
     MachineCycle cycle_;
     Pace pace_;
     CycleOrders orders_;
     RunNotices notices_;
     std::vector<RunNotice> heldBack_;  ///< until what they speak of rests
-    AxisLights lights_;
     RunReporter reporter_;
-    Phase phase_{Phase::GoingOp};
+    Phase phase_{Phase::BringUp};
     core::CycleNumber phaseBegan_{0};
     core::CycleNumber now_{0};
     ExitCode code_{ExitCode::Good};
     bool quickStopped_{false};
-    bool stopFirst_{false};  ///< power off only when the axes have come to rest
+    bool stopTimedOut_{false};
+    bool stopNoted_{false};  ///< the present machine stop has been noted
     std::atomic<bool> over_{false};
 };
 

@@ -59,7 +59,7 @@ std::vector<std::string> ProgramHost::start(const Axes& axes, core::Duration cyc
 void ProgramHost::cycle(core::CycleNumber cycle, Axes& axes) noexcept {
     if (ended()) return;
     if (!caller_->underWay()) {
-        if (cycle % params_.everyCycles != 0) return;
+        if (held_ || cycle % params_.everyCycles != 0) return;
         open(axes);
         phase_ = ProgramPhase::Running;
     }
@@ -80,7 +80,9 @@ void ProgramHost::open(Axes& axes) noexcept {
 }
 
 void ProgramHost::settle(Axes& axes) noexcept {
-    const bool commandsCount = phase_ == ProgramPhase::Running || phase_ == ProgramPhase::Finished;
+    // What a call brings that was still out when its program was stopped comes too late.
+    const bool commandsCount =
+        !held_ && (phase_ == ProgramPhase::Running || phase_ == ProgramPhase::Finished);
     for (std::size_t i = 0; i < axes.size(); ++i) {
         axis::AxisPort& area = work_->area(i);
         if (!area.commands().empty()) commanded_[i] = true;
@@ -93,6 +95,12 @@ void ProgramHost::stopAxes(Axes& axes) noexcept {
     for (std::size_t i = 0; i < axes.size(); ++i) {
         if (commanded_[i]) axes[i].stopByProgramLoss();
     }
+}
+
+void ProgramHost::hold(Axes& axes) noexcept {
+    if (ended() || held_) return;
+    held_ = true;
+    stopAxes(axes);
 }
 
 void ProgramHost::end(ProgramPhase phase, core::CycleNumber cycle) noexcept {

@@ -40,6 +40,23 @@ public:
     void useCaller(std::unique_ptr<ProgramCaller> caller) { caller_ = std::move(caller); }
     /// rt. One call of the program; its commands reach the axes when it came back. \pre useCaller()
     void cycle(core::CycleNumber cycle, Axes& axes) noexcept;
+    /// rt. The operator stops the program: it is not called any more and its axes stop on their ramp.
+    void hold(Axes& axes) noexcept;
+    /// rt. It is called again from where it was stopped; its blocks show CommandAborted.
+    void goOn() noexcept { held_ = false; }
+    [[nodiscard]] bool held() const noexcept { return held_; }
+    /// rt. No call is out: the program's own values may be looked at, and it may be told something.
+    [[nodiscard]] bool atRest() const noexcept {
+        return phase_ != ProgramPhase::Abandoned && !(caller_ && caller_->underWay());
+    }
+    /// rt. The program has asked for this axis; while it runs nobody else moves it.
+    [[nodiscard]] bool uses(std::size_t axis) const noexcept { return work_->machine().axes()[axis].asked; }
+    /// rt. The machine as the program sees it: to tell it of a machine stop and to hear it ask for one.
+    /// \pre atRest()
+    [[nodiscard]] program::Machine& machine() noexcept { return work_->machine(); }
+    [[nodiscard]] const program::Machine& machine() const noexcept { return work_->machine(); }
+    [[nodiscard]] const std::vector<program::Watch>& watched() const noexcept { return inspector_.watches(); }
+
     /// After the last cycle. Calls the program's `stop` once, unless a call never came back.
     void stop();
 
@@ -66,6 +83,7 @@ private:
     std::vector<bool> commanded_;  ///< for each axis: the program has commanded it
     program::Inspector inspector_;
     ProgramPhase phase_{ProgramPhase::Waiting};
+    bool held_{false};
     core::CycleNumber endCycle_{0};
 };
 

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -42,6 +44,9 @@ struct Start {
 void* runThread(void* argument) {
     const std::unique_ptr<Start> start{static_cast<Start*>(argument)};
     pthread_setname_np(pthread_self(), start->name.substr(0, 15).c_str());
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, nullptr);  // signals are for the thread that keeps house
     dropCapabilities();
     flushDenormals();
     start->body();

@@ -26,7 +26,7 @@ void RunReporter::tell(const RunNotice& notice) {
                                               master_.problem()));
         case RunNotice::Kind::ProgramEnded: return tellProgram(programs_[notice.index]);
         case RunNotice::Kind::AxisNotStopped:
-            return console_.error(fmt::format("axis {} did not stop and power off within {} s",
+            return console_.error(fmt::format("axis {} did not stop and power off within {} s; its drive stops it now",
                                               machine_.axes[notice.index].name, StopTimeout / 1s));
         case RunNotice::Kind::InitTimedOut:
             return console_.error(fmt::format("the network did not go to INIT within {} s", InitTimeout / 1s));
@@ -38,6 +38,9 @@ void RunReporter::tell(const RunNotice& notice) {
             return console_.error(fmt::format("cycle {}: too many cycles missed ({} in a row); the axes stop on their "
                                               "path",
                                               notice.cycle, notice.number));
+        case RunNotice::Kind::MachineStopped: return tellMachineStop(notice.stop);
+        case RunNotice::Kind::MachineStopReset:
+            return console_.line(fmt::format("machine stop reset before cycle {}", notice.cycle));
         case RunNotice::Kind::DrivesStopped:
             return console_.error(fmt::format("cycle {}: {} cycles missed in a row; the drives stop", notice.cycle,
                                               notice.number));
@@ -63,15 +66,25 @@ void RunReporter::tellProgram(const ProgramHost& program) {
     }
 }
 
-void RunReporter::progress(const AxisLights& lights) {
-    const core::CycleNumber now = lights.cycle();
+void RunReporter::tellMachineStop(const StopRecord& stop) {
+    std::string why = describe(stop, names_.stopInputs, names_.programs, names_.axes);
+    if (stop.cause == StopCause::Program) {
+        // The program keeps its words until the stop is reset.
+        why += fmt::format(": {}", programs_[stop.source].machine().stopReason());
+    }
+    console_.error(fmt::format("machine stop in cycle {} by {}; axes stop and are switched off", stop.cycle, why));
+}
+
+void RunReporter::progress(const StatusBoard& board) {
+    const core::CycleNumber now = board.run.read().cycle;
     const auto perSecond = static_cast<core::CycleNumber>(1s / machine_.network.cycle);
     if (now < shownAt_ + perSecond) return;
     shownAt_ = now;
     std::string text = fmt::format("{:7.1f} s", static_cast<double>(now) * seconds(machine_.network.cycle));
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-        text += fmt::format("   {} {:9.3f} {} {}", machine_.axes[i].name, lights.actual(i), machine_.axes[i].unit,
-                            axis::name(lights.state(i)));
+        const axis::AxisStatus status = board.axes[i].read().status;
+        text += fmt::format("   {} {:9.3f} {} {}", machine_.axes[i].name, status.actual.count(), machine_.axes[i].unit,
+                            axis::name(status.state));
     }
     console_.progress(text);
 }

@@ -26,12 +26,19 @@ StopRequest::StopRequest() {
     sigaction(SIGINT, &action, &oldInt_);
     sigaction(SIGTERM, &action, &oldTerm_);
     sigaction(SIGHUP, &action, &oldHup_);
+    action.sa_handler = SIG_IGN;
+    sigaction(SIGPIPE, &action, &oldPipe_);
+    sigaction(SIGTSTP, &action, &oldStop_);
+    sigaction(SIGTTOU, &action, &oldTtou_);
 }
 
 StopRequest::~StopRequest() {
     sigaction(SIGINT, &oldInt_, nullptr);
     sigaction(SIGTERM, &oldTerm_, nullptr);
     sigaction(SIGHUP, &oldHup_, nullptr);
+    sigaction(SIGPIPE, &oldPipe_, nullptr);
+    sigaction(SIGTSTP, &oldStop_, nullptr);
+    sigaction(SIGTTOU, &oldTtou_, nullptr);
 }
 
 int StopRequest::count() const noexcept { return signalCount.load(std::memory_order_relaxed); }

@@ -5,7 +5,8 @@
 namespace takt::daemon {
 
 /// SIGINT, SIGTERM and SIGHUP as requests to stop, for the lifetime of the object. A closed terminal is
-/// such a request too: the machine stops in order, never at once.
+/// such a request too: the machine stops in order, never at once. A closed pipe, a key that suspends
+/// (^Z) and a terminal that is somebody else's do nothing: output is not worth a machine that stops dead.
 class StopRequest {
 public:
     StopRequest();
@@ -22,6 +23,9 @@ private:
     struct sigaction oldInt_ {};
     struct sigaction oldTerm_ {};
     struct sigaction oldHup_ {};
+    struct sigaction oldPipe_ {};
+    struct sigaction oldStop_ {};
+    struct sigaction oldTtou_ {};
 };
 
 }  // namespace takt::daemon

@@ -69,6 +69,12 @@ public:
     void requestPowerOff() noexcept;
     /// The drive stops by itself (CiA 402 quick stop) and is switched off.
     void quickStop() noexcept;
+    /// The machine stop holds the axis: it stops on its stop ramp and is switched off then,
+    /// whatever its power-off mode; motion and power are refused. To be called in every cycle of
+    /// the stop.
+    void machineStop() noexcept;
+    /// The machine stop was reset. Power comes back only after Enable of MC_Power fell and rose.
+    void releaseMachineStop() noexcept { view_.machineStop = false; }
     /// No motion: the set-point rests and no homing runs.
     [[nodiscard]] bool isStopped() const noexcept { return motion_.resting() && !drive_.homing(); }
     /// The motor is not energised.

@@ -50,7 +50,9 @@ struct AxisView {
     bool inVelocity{false};   ///< the MoveVelocity in control has reached its velocity
     bool stopDone{false};     ///< Stopping at velocity zero
     bool stopReleased{true};  ///< Stopping ends with velocity zero
-    bool movedBackward{false};  ///< direction of the last motion
+    bool movedBackward{false};    ///< direction of the last motion
+    bool machineStop{false};      ///< the machine stop holds the axis: no motion, no power
+    bool needsEnableEdge{false};  ///< since a machine stop: power only after Enable fell
     std::uint8_t queued{0};
     core::Position set{};
     core::Velocity setVelocity{};

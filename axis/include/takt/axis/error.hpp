@@ -34,6 +34,7 @@ enum class ErrorId : std::uint16_t {
     MemberBusy = 0x0207,
     GroupNotEnabled = 0x0208,
     NotSynchronized = 0x0209,
+    MachineStopped = 0x020A,
     // Queue
     BufferFull = 0x0301,
     InstanceBusy = 0x0302,

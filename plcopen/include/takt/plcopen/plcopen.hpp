@@ -3,6 +3,7 @@
 /// All function blocks.
 #include <takt/plcopen/enums.hpp>
 #include <takt/plcopen/mc_home.hpp>
+#include <takt/plcopen/mc_jog.hpp>
 #include <takt/plcopen/mc_move.hpp>
 #include <takt/plcopen/mc_power.hpp>
 #include <takt/plcopen/mc_read.hpp>

@@ -14,6 +14,7 @@ namespace takt::program {
 struct Watch {
     std::string name;
     std::function<std::string()> text;  ///< the present value; outside the cycle
+    std::function<double()> number;     ///< rt. the same as a number
 };
 
 /// The one list of what a program wants seen: `inspector.watch("step", step_);`
@@ -30,7 +31,8 @@ public:
                                 } else {
                                     return std::to_string(variable);
                                 }
-                            }});
+                            },
+                            [&variable] { return static_cast<double>(variable); }});
     }
 
     [[nodiscard]] const std::vector<Watch>& watches() const noexcept { return watches_; }

@@ -18,6 +18,7 @@ public:
     struct NamedAxis {
         std::string name;
         axis::AxisRef ref;
+        bool asked{false};  ///< the program has asked for it by name
     };
 
     Machine(std::vector<NamedAxis> axes, core::Duration cycleTime);
@@ -37,6 +38,14 @@ public:
     /// rt. Says why the program is about to return Failed; up to 200 characters are kept.
     void fail(std::string_view reason) noexcept;
 
+    /// rt. Stops the whole machine: every axis ramps down and is switched off, and stays off until the stop
+    /// is reset and Enable of MC_Power has fallen and risen. The first reason is kept, 100 characters of it.
+    void stop(std::string_view reason) noexcept;
+    /// rt. The machine stop is latched, whoever asked for it.
+    [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+    /// rt. Acknowledges the machine stop; without effect while its input is active.
+    void resetStop() noexcept { resetWanted_ = true; }
+
     // For the side that runs the program.
 
     /// rt.
@@ -44,6 +53,14 @@ public:
     /// Names that `axis` did not know.
     [[nodiscard]] const std::vector<std::string>& unknownAxes() const noexcept { return unknown_; }
     [[nodiscard]] const std::vector<NamedAxis>& axes() const noexcept { return axes_; }
+    /// rt. Takes over what the program asked for in this call: stop, reset.
+    struct StopWishes {
+        bool stop{false};
+        bool reset{false};
+    };
+    [[nodiscard]] StopWishes takeStopWishes() noexcept;
+    void setStopped(bool stopped) noexcept { stopped_ = stopped; }
+    [[nodiscard]] std::string_view stopReason() const noexcept { return {stopReason_.data(), stopReasonSize_}; }
     [[nodiscard]] std::string_view failure() const noexcept { return {failure_.data(), failureSize_}; }
 
 private:
@@ -53,6 +70,11 @@ private:
     core::CycleNumber cycle_{0};
     std::array<char, 200> failure_{};
     std::size_t failureSize_{0};
+    std::array<char, 100> stopReason_{};
+    std::size_t stopReasonSize_{0};
+    bool stopWanted_{false};
+    bool resetWanted_{false};
+    bool stopped_{false};
 };
 
 }  // namespace takt::program

@@ -1,0 +1,90 @@
+// What the control server tells of the machine.
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "control_server.hpp"
+
+namespace takt::daemon {
+
+namespace {
+
+AxisReport reportOf(const AxisEntry& entry, const ControlNames& names, std::size_t index) {
+    const axis::AxisStatus& status = entry.status;
+    AxisReport report;
+    report.name = names.axes[index];
+    report.unit = names.units[index];
+    report.state = axis::name(status.state);
+    report.set = status.set.count();
+    report.actual = status.actual.count();
+    report.velocity = status.actualVelocity.count();
+    report.lag = status.lag.count();
+    report.powered = status.powered;
+    report.homed = status.homed;
+    report.needsEnableEdge = entry.needsEnableEdge;
+    if (entry.error.id != axis::ErrorId::None) report.error = axis::explain(entry.error);
+    if (entry.holder < names.programs.size()) report.holder = names.programs[entry.holder];
+    return report;
+}
+
+ProgramReport reportOf(const ProgramEntry& entry, const ProgramHost& program) {
+    ProgramReport report;
+    report.name = program.name();
+    report.state = name(entry.phase, entry.held);
+    const auto& watched = program.watched();
+    for (std::size_t i = 0; i < watched.size() && i < entry.watches.size(); ++i) {
+        report.watches.push_back({watched[i].name, entry.watches[i]});
+    }
+    return report;
+}
+
+}  // namespace
+
+StatusReport ControlServer::report() const {
+    const StatusBoard& board = parts_.control.board();
+    const ControlNames& names = parts_.control.names();
+    const RunEntry run = board.run.read();
+    StatusReport report;
+    report.machine = parts_.machine.name;
+    report.pid = ::getpid();
+    report.cycle = run.cycle;
+    report.seconds = secondsOf(run.cycle);
+    report.phase = name(run.phase);
+    report.network = fieldbus::ethercat::name(run.network);
+    report.framesSent = run.counters.framesSent;
+    report.framesLost = run.counters.framesLost;
+    report.framesLate = run.counters.framesLate;
+    report.workingCounterErrors = run.counters.workingCounterErrors;
+    if (run.stop.cause != StopCause::None) {
+        report.machineStop = describe(run.stop, names.stopInputs, names.programs, names.axes);
+    }
+    report.owner = ownerName();
+    for (std::size_t i = 0; i < board.axes.size(); ++i) {
+        report.axes.push_back(reportOf(board.axes[i].read(), names, i));
+    }
+    for (std::size_t i = 0; i < board.programs.size(); ++i) {
+        report.programs.push_back(reportOf(board.programs[i].read(), parts_.programs[i]));
+    }
+    return report;
+}
+
+std::vector<EventReport> ControlServer::eventsAfter(std::uint64_t number) const {
+    std::vector<EventReport> events;
+    for (const EventReport& event : events_) {
+        if (event.number > number) events.push_back(event);
+    }
+    return events;
+}
+
+double ControlServer::secondsOf(core::CycleNumber cycle) const {
+    return static_cast<double>(cycle) * std::chrono::duration<double>{parts_.machine.network.cycle}.count();
+}
+
+std::string ControlServer::ownerName() const {
+    const auto owner = clients_.find(owner_);
+    if (owner == clients_.end()) return {};
+    const std::string& who = owner->second.who;
+    return fmt::format("{} (process {})", who.empty() ? "a client" : who, owner->second.pid);
+}
+
+}  // namespace takt::daemon

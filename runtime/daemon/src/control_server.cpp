@@ -1,0 +1,287 @@
+#include "control_server.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "command_file.hpp"
+#include "realtime_thread.hpp"
+
+namespace takt::daemon {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The cycle cannot wake this thread without a system call, so it looks for answers by itself.
+constexpr std::chrono::milliseconds LookAfter = 5ms;
+constexpr std::size_t MostTickets = 256;
+
+ReplyKind kindOf(AnswerKind kind) noexcept { return static_cast<ReplyKind>(kind); }
+static_assert(static_cast<int>(ReplyKind::Failed) == static_cast<int>(AnswerKind::Failed));
+
+/// Signals are for the thread that runs the machine.
+void blockSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, nullptr);
+}
+
+std::uint16_t indexOf(const std::vector<std::string>& names, const std::string& name) {
+    return static_cast<std::uint16_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+}  // namespace
+
+ControlServer::ControlServer(const Parts& parts, const std::filesystem::path& socket,
+                             const std::filesystem::path& commandFile)
+    : parts_{parts}, socket_{socket, parts.machine.name} {
+    if (!commandFile.empty()) commandFile_ = std::make_unique<record::OutputFile>(commandFile);
+    // The thread inherits the mask: no signal can reach it before it has set its own.
+    sigset_t all;
+    sigset_t before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    thread_ = std::thread{[this] { serve(); }};
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+ControlServer::~ControlServer() { static_cast<void>(finish()); }
+
+bool ControlServer::finish() {
+    ending_ = true;
+    if (thread_.joinable()) thread_.join();
+    takeCommands();
+    const bool lost = parts_.control.rings().takenLost.load(std::memory_order_relaxed) > 0;
+    return !commandFile_ || (commandFile_->flush() && !lost);
+}
+
+void ControlServer::serve() {
+    dropCapabilities();
+    blockSignals();
+    while (!ending_) {
+        waitForClients();
+        takeAnswers();
+        takeEvents();
+        takeCommands();
+        watchOwner();
+        sendAll();
+        dropGone();
+    }
+    takeAnswers();
+    takeEvents();
+    sendAll();
+    for (auto& [number, client] : clients_) ::close(client.connection);
+    clients_.clear();
+}
+
+void ControlServer::waitForClients() {
+    std::vector<pollfd> waits{{socket_.descriptor(), POLLIN, 0}};
+    std::vector<std::uint64_t> numbers;
+    for (const auto& [number, client] : clients_) {
+        const auto wanted = static_cast<short>(client.unsent.empty() ? POLLIN : POLLIN | POLLOUT);
+        waits.push_back({client.connection, wanted, 0});
+        numbers.push_back(number);
+    }
+    if (::poll(waits.data(), waits.size(), static_cast<int>(LookAfter.count())) <= 0) return;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if ((waits[i + 1].revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
+            receive(numbers[i], clients_[numbers[i]]);
+        }
+    }
+    if ((waits[0].revents & POLLIN) != 0) acceptClients();
+}
+
+void ControlServer::acceptClients() {
+    const int connection = ::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (connection < 0) return;
+    const Peer peer = peerOf(connection);
+    if (!peer.allowed || clients_.size() >= MostClients) {
+        ControlReply reply{.kind = ReplyKind::Refused};
+        reply.error = peer.allowed ? "too many clients" : "only the owner of this machine and its group may connect";
+        const std::string line = encode(reply);
+        static_cast<void>(::send(connection, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT));
+        ::close(connection);
+        return;
+    }
+    Client client;
+    client.connection = connection;
+    client.pid = peer.pid;
+    clients_.emplace(++lastClient_, std::move(client));
+}
+
+void ControlServer::receive(std::uint64_t number, Client& client) {
+    std::array<char, 4096> buffer{};
+    const ssize_t count = ::recv(client.connection, buffer.data(), buffer.size(), 0);
+    if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) client.gone = true;
+    if (count <= 0) return;
+    client.received.append(buffer.data(), static_cast<std::size_t>(count));
+    std::size_t begin = 0;
+    for (std::size_t end = 0; (end = client.received.find('\n', begin)) != std::string::npos; begin = end + 1) {
+        handle(number, client, std::string_view{client.received}.substr(begin, end - begin));
+    }
+    client.received.erase(0, begin);
+    if (client.received.size() > MostLine) {
+        refuse(client, {}, fmt::format("a request is longer than {} characters", MostLine));
+        client.received.clear();
+        client.gone = true;
+    }
+}
+
+void ControlServer::handle(std::uint64_t number, Client& client, std::string_view line) {
+    std::string error;
+    const auto request = parseRequest(line, error);
+    if (!request) return refuse(client, {}, std::move(error));
+    if (!request->who.empty()) client.who = request->who.substr(0, 32);
+    ControlReply reply{.id = request->id};
+    if (request->verb == "status") {
+        reply.status = report();
+    } else if (request->verb == "events") {
+        takeEvents();
+        reply.events = eventsAfter(request->after);
+    } else {
+        return order(number, client, *request);
+    }
+    client.unsent += encode(reply);
+}
+
+void ControlServer::refuse(Client& client, const ControlRequest& request, std::string why) {
+    client.unsent += encode(ControlReply{.id = request.id, .kind = ReplyKind::Refused, .error = std::move(why)});
+}
+
+void ControlServer::order(std::uint64_t number, Client& client, const ControlRequest& request) {
+    ControlCommand command;
+    if (std::string why = commandOf(request, command); !why.empty()) return refuse(client, request, why);
+    const bool isHeartbeat = command.order == Order::Heartbeat;
+    // A heartbeat of somebody who does not operate means nothing; anybody may stop the machine.
+    if (isHeartbeat && owner_ != number) return;
+    if (command.order != Order::MachineStop) {
+        if (std::string why = claim(number, client); !why.empty()) return refuse(client, request, why);
+    }
+    if (!isHeartbeat) {
+        if (tickets_.size() >= MostTickets) return refuse(client, request, "too many commands at once");
+        command.ticket = ++lastTicket_;
+        tickets_[command.ticket] = {number, request.id, command.order, command.target};
+    }
+    if (parts_.control.rings().commands.push(command) || isHeartbeat) return;
+    tickets_.erase(command.ticket);
+    refuse(client, request, "busy: the machine has not yet taken the commands before");
+}
+
+/// \return why there is no such command; empty when there is
+std::string ControlServer::commandOf(const ControlRequest& request, ControlCommand& command) const {
+    const auto order = orderOf(request.verb);
+    if (!order) return fmt::format("there is no request '{}'", request.verb);
+    const ControlNames& names = parts_.control.names();
+    command.order = *order;
+    command.distance = request.distance;
+    command.velocity = request.velocity;
+    const bool ofAxis = targetOf(*order) == OrderTarget::Axis;
+    if (targetOf(*order) == OrderTarget::None) return {};
+    const auto& known = ofAxis ? names.axes : names.programs;
+    const std::string& wanted = ofAxis ? request.axis : request.program;
+    command.target = indexOf(known, wanted);
+    if (command.target < known.size()) return {};
+    return fmt::format("there is no {} '{}'; allowed: {}", ofAxis ? "axis" : "program", wanted,
+                       fmt::join(known, ", "));
+}
+
+/// Makes the client the owner, or says who is.
+std::string ControlServer::claim(std::uint64_t number, const Client& client) {
+    const auto now = std::chrono::steady_clock::now();
+    if (owner_ != 0 && owner_ != number) {
+        if (now - ownerSeen_ <= OwnerTime) return fmt::format("the machine is operated by {}", ownerName());
+        leave();
+    }
+    if (leavePending_) return "busy: the operator before has just left";
+    static_cast<void>(client);
+    owner_ = number;
+    ownerSeen_ = now;
+    return {};
+}
+
+void ControlServer::takeAnswers() {
+    ControlAnswer answer;
+    while (parts_.control.rings().answers.pop(answer)) {
+        const auto found = tickets_.find(answer.ticket);
+        if (found == tickets_.end()) continue;
+        const Ticket ticket = found->second;
+        if (answer.kind != AnswerKind::Accepted) tickets_.erase(found);
+        const auto client = clients_.find(ticket.client);
+        if (client == clients_.end()) continue;
+        ControlReply reply{.id = ticket.request, .kind = kindOf(answer.kind), .error = {}, .cycle = answer.cycle};
+        if (answer.error != axis::ErrorId::None) {
+            const axis::ErrorInfo& info = axis::errorInfo(answer.error);
+            reply.error = fmt::format("{}: {} {}", info.name, info.text, info.remedy);
+        } else if (answer.refusal != Refusal::None) {
+            reply.error = explain(answer.refusal, ticket.order, ticket.target, answer.detail,
+                                  parts_.control.names());
+        }
+        client->second.unsent += encode(reply);
+    }
+}
+
+void ControlServer::takeEvents() {
+    record::Event event;
+    while (parts_.control.rings().events.next(event)) {
+        events_.push_back({++lastEvent_, event.cycle, secondsOf(event.cycle), text(event, parts_.control.names())});
+        if (events_.size() > KeptEvents) events_.pop_front();
+    }
+}
+
+void ControlServer::takeCommands() {
+    TakenCommand taken;
+    while (parts_.control.rings().taken.pop(taken)) {
+        if (commandFile_) commandFile_->write(formatCommand(taken, parts_.control.names()));
+    }
+}
+
+void ControlServer::watchOwner() {
+    if (owner_ != 0) {
+        const auto client = clients_.find(owner_);
+        const bool waits = std::any_of(tickets_.begin(), tickets_.end(), [this](const auto& entry) {
+            return entry.second.client == owner_;
+        });
+        const bool silent = std::chrono::steady_clock::now() - ownerSeen_ > OwnerTime;
+        if (client == clients_.end() || client->second.gone || (silent && !waits)) leave();
+    }
+    if (!leavePending_) return;
+    leavePending_ = !parts_.control.rings().commands.push({.order = Order::Leave});
+}
+
+void ControlServer::leave() {
+    owner_ = 0;
+    leavePending_ = !parts_.control.rings().commands.push({.order = Order::Leave});
+}
+
+void ControlServer::sendAll() {
+    for (auto& [number, client] : clients_) {
+        if (client.unsent.empty()) continue;
+        const ssize_t sent = ::send(client.connection, client.unsent.data(), client.unsent.size(), MSG_NOSIGNAL);
+        if (sent > 0) client.unsent.erase(0, static_cast<std::size_t>(sent));
+        const bool broken = sent < 0 && errno != EAGAIN && errno != EINTR;
+        if (broken || client.unsent.size() > MostUnsent) client.gone = true;
+    }
+}
+
+void ControlServer::dropGone() {
+    for (auto client = clients_.begin(); client != clients_.end();) {
+        if (!client->second.gone) {
+            ++client;
+            continue;
+        }
+        if (client->first == owner_) leave();
+        ::close(client->second.connection);
+        client = clients_.erase(client);
+    }
+}
+
+}  // namespace takt::daemon
