@@ -54,12 +54,13 @@ ProcessResult runCommand(const std::vector<std::string>& command, const std::str
     return result;
 }
 
-ProcessResult runTakt(const std::vector<std::string>& arguments, const std::string& workDir) {
+ProcessResult runTakt(const std::vector<std::string>& arguments, const std::string& workDir,
+                      std::vector<std::string> extraEnvironment) {
     std::vector<std::string> command{std::string{TAKT_BINARY_DIR} + "/takt"};
     command.insert(command.end(), arguments.begin(), arguments.end());
     const std::string trap = std::string{TAKT_BINARY_DIR} + "/libtakt_trap.so";
-    if (!std::filesystem::exists(trap)) return runCommand(command, workDir);
-    return runCommand(command, workDir, {"LD_PRELOAD=" + trap});
+    if (std::filesystem::exists(trap)) extraEnvironment.push_back("LD_PRELOAD=" + trap);
+    return runCommand(command, workDir, extraEnvironment);
 }
 
 std::string freshFolder(const std::string& name) {
