@@ -104,6 +104,7 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     Folders folders{folder};
     folders.insert(folders.end(), librarySearch.begin(), librarySearch.end());
     machine.programs = readPrograms(root, folders, libraries);
+    machine.machineStop = readMachineStop(root.childReader("MachineStop"), network, axes);
     machine.twin = readTwin(root.childReader("Twin"), network, axes);
     readRealtime(root.childReader("Realtime"), machine.scheduler);
     noteIdleSlaves(network);

@@ -67,6 +67,10 @@ void addDriveObjects(SlavePart& slave, const AxisPart& axis, std::uint32_t lostL
 [[nodiscard]] twin::TwinParams readTwin(ElementReader reader, const NetworkPart& network,
                                         const std::vector<AxisPart>& axes);
 
+/// Reads <MachineStop> and ties its inputs to mapped entries.
+[[nodiscard]] axis::MachineStopParams readMachineStop(ElementReader reader, NetworkPart& network,
+                                                      const std::vector<AxisPart>& axes);
+
 /// Reads a <Program>; its library is looked for in `folders`, in order.
 [[nodiscard]] program::ProgramParams readProgram(ElementReader reader,
                                                  const std::vector<std::filesystem::path>& folders,
