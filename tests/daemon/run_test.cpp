@@ -141,6 +141,37 @@ TEST(Run, RefusesACommandLineItDoesNotUnderstand) {
     EXPECT_EQ(runTakt({"run", Gantry, "--fast", "--for", "10 apples"}, TAKT_BINARY_DIR).exitCode, 1);
 }
 
+/// A run of the gantry in which frames get lost while X and Y travel.
+ProcessResult runWithLostFrames(const std::string& name, int cycles, const std::string& trace) {
+    const std::string faults = freshFolder(name) + "/faults.xml";
+    writeFile(faults, "<Faults><LostFrames cycle=\"7000\" cycles=\"" + std::to_string(cycles) + "\"/></Faults>");
+    return runTakt({"run", Gantry, "--fast", "--faults", faults, "--trace", trace}, TAKT_BINARY_DIR);
+}
+
+TEST(Run, CarriesOnOverAsManyLostFramesAsTheNetworkTolerates) {
+    const std::string trace = freshFolder("lost_three") + "/a.csv";
+    const auto result = runWithLostFrames("lost_three_faults", 3, trace);
+    EXPECT_EQ(result.exitCode, 0) << result.output;
+    EXPECT_THAT(result.output, HasSubstr(" 3 lost"));
+    EXPECT_THAT(readFile(trace), Not(HasSubstr("ErrorStop")));
+}
+
+TEST(Run, StopsTheAxesWhenMoreFramesAreLost) {
+    const std::string trace = freshFolder("lost_four") + "/a.csv";
+    const auto result = runWithLostFrames("lost_four_faults", 4, trace);
+    EXPECT_EQ(result.exitCode, 3) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("CommunicationLost"));
+    EXPECT_THAT(readFile(trace), HasSubstr("ErrorStop"));
+}
+
+TEST(Run, RefusesAFaultFileWithItsLine) {
+    const std::string faults = freshFolder("bad_faults") + "/faults.xml";
+    writeFile(faults, "<Faults>\n  <LostFrames cycle=\"-1\"/>\n</Faults>\n");
+    const auto result = runTakt({"run", Gantry, "--fast", "--faults", faults}, TAKT_BINARY_DIR);
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_THAT(result.output, HasSubstr("faults.xml:2"));
+}
+
 TEST(Check, SaysWhatTheNetworkNeedsAndThatTheMachineIsGood) {
     const auto result = runTakt({"check", Gantry}, TAKT_BINARY_DIR);
     EXPECT_EQ(result.exitCode, 0) << result.output;

@@ -71,6 +71,8 @@ void addRun(CLI::App& app, RunArguments& run) {
     command->add_option("--program-watchdog", run.watchdog,
                         "simulated: end the run when a program does not come back for so long (10s)");
     command->add_option("--socket", options.socket, "path of the control socket");
+    command->add_option("--faults", options.faults, "what goes wrong on the simulated machine, by cycle")
+        ->excludes("--interface");
     command->add_option("--commands", options.commands, "replay the operator's commands of this file, cycle by cycle");
     command->add_option("--record-commands", options.recordCommands, "write the operator's commands to this file");
     command->add_flag("--quiet", options.quiet, "print errors only");

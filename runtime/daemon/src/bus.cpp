@@ -15,13 +15,20 @@ namespace {
 class SimulatedEnd final : public BusEnd {
 public:
     explicit SimulatedEnd(const config::MachineConfig& machine)
-        : twin_{machine.twin, twinDevices(machine), machine.network.cycle} {}
+        : twin_{machine.twin, twinDevices(machine), machine.network.cycle},
+          lost_{machine.twin.faults.lostFrames} {}
 
     [[nodiscard]] wire::Link& link() noexcept override { return twin_.link(); }
     [[nodiscard]] core::ClockSource& clock() noexcept override { return twin_.clock(); }
+    void beginCycle(core::CycleNumber number) noexcept override {
+        while (next_ < lost_.size() && number >= lost_[next_].cycle + lost_[next_].cycles) ++next_;
+        twin_.cutCable(next_ < lost_.size() && number >= lost_[next_].cycle);
+    }
 
 private:
     twin::Twin twin_;
+    std::vector<twin::LostFramesParams> lost_;  ///< ascending
+    std::size_t next_{0};                       ///< the first that is not over
 };
 
 class InterfaceEnd final : public BusEnd {
@@ -31,6 +38,7 @@ public:
 
     [[nodiscard]] wire::Link& link() noexcept override { return link_; }
     [[nodiscard]] core::ClockSource& clock() noexcept override { return clock_; }
+    void beginCycle(core::CycleNumber) noexcept override {}
 
 private:
     fieldbus::PacketLink link_;

@@ -18,6 +18,8 @@ public:
     virtual ~BusEnd() = default;
     [[nodiscard]] virtual wire::Link& link() noexcept = 0;
     [[nodiscard]] virtual core::ClockSource& clock() noexcept = 0;
+    /// rt. Cycle `number` is about to send.
+    virtual void beginCycle(core::CycleNumber number) noexcept = 0;
 };
 
 /// A simulated segment in this process, on virtual time.
@@ -36,6 +38,8 @@ public:
 
     [[nodiscard]] fieldbus::ethercat::Master& master() noexcept { return *master_; }
     [[nodiscard]] core::ClockSource& clock() noexcept { return end_->clock(); }
+    /// rt.
+    void beginCycle(core::CycleNumber number) noexcept { end_->beginCycle(number); }
 
 private:
     std::unique_ptr<BusEnd> end_;

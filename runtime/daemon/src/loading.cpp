@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <takt/config/load_faults.hpp>
 #include <takt/config/load_machine.hpp>
 #include <takt/fieldbus/bus_timing.hpp>
 
@@ -44,6 +45,17 @@ void checkLoad(const config::MachineConfig& machine, std::vector<std::string>& p
                                    MaxLoad * 100));
 }
 
+/// Faults belong to the simulated machine, so they go to its twin. \return false when they are refused
+bool readFaults(const RunOptions& options, config::LoadResult& result, Console& console) {
+    config::Diagnostics diagnostics;
+    const auto faults = config::loadFaults(options.faults, diagnostics);
+    for (const config::Diagnostic& diagnostic : diagnostics.items()) {
+        console.error(config::format(diagnostic));
+    }
+    if (faults && result.machine) result.machine->twin.faults = *faults;
+    return faults.has_value();
+}
+
 }  // namespace
 
 std::optional<LoadedMachine> loadMachine(const RunOptions& options, std::vector<LinkedProgram> linked,
@@ -52,6 +64,7 @@ std::optional<LoadedMachine> loadMachine(const RunOptions& options, std::vector<
     for (const config::Diagnostic& diagnostic : result.diagnostics.items()) {
         console.error(config::format(diagnostic));
     }
+    if (!options.faults.empty() && !readFaults(options, result, console)) return std::nullopt;
     if (!result.machine) return std::nullopt;
 
     std::optional<LoadedMachine> loaded{std::in_place};

@@ -12,6 +12,7 @@ using fieldbus::ethercat::NetworkState;
 
 void MachineRun::oneCycle() noexcept {
     const scheduler::Beat beat = grid_.wait(bus_.clock());
+    bus_.beginCycle(beat.number);
     cycle_.run(beat, orders_);
     now_ = beat.number + 1;
     const core::CycleGuard guard;

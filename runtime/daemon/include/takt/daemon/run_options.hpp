@@ -40,6 +40,7 @@ struct RunOptions {
     std::filesystem::path capture;          ///< pcapng
     /// On the wall clock, for programs of a simulated run: a call that takes longer ends the process.
     core::Duration programWatchdog{std::chrono::seconds{10}};
+    std::filesystem::path faults;           ///< what goes wrong on the simulated machine; empty = nothing
     std::filesystem::path socket;           ///< of the control socket; empty = the usual place
     std::filesystem::path commands;         ///< replays the commands of this file; empty = none
     std::filesystem::path recordCommands;   ///< writes the commands taken to this file; empty = none

@@ -57,6 +57,7 @@ struct TwinParams {
     std::vector<TwinDeviceParams> devices;   ///< in frame order, one for each slave of the network
     double hostPpm{0.0};                     ///< of the controller's own clock
     core::Duration wakeJitter{0};            ///< latest a wake-up comes too late
+    FaultParams faults;
     std::uint64_t seed{1};
 };
 
