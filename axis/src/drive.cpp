@@ -11,32 +11,39 @@ using cia::DriveState;
 
 namespace {
 
-/// One PDO entry. Entries on byte boundaries, which is nearly all of them, are read without bit
-/// shuffling.
+/// Entries on byte boundaries, which is nearly all of them, go without bit shuffling.
+bool onBytes(core::PdoSlot slot) noexcept {
+    return slot.bitOffset % 8 == 0;
+}
+
 std::uint32_t load(std::span<const std::uint8_t> image, core::PdoSlot slot) noexcept {
-    if (slot.bitOffset % 8 != 0 || slot.bitLength % 8 != 0) return core::readUnsigned(image, slot);
     const std::uint8_t* const p = image.data() + slot.bitOffset / 8;
-    switch (slot.bitLength) {
-        case 8:
-            return p[0];
-        case 16:
-            return static_cast<std::uint32_t>(p[0] | (p[1] << 8));
-        case 32:
+    if (onBytes(slot)) {
+        if (slot.bitLength == 16) return static_cast<std::uint32_t>(p[0] | (p[1] << 8));
+        if (slot.bitLength == 8) return p[0];
+        if (slot.bitLength == 32) {
             return std::uint32_t{p[0]} | (std::uint32_t{p[1]} << 8) | (std::uint32_t{p[2]} << 16) |
                    (std::uint32_t{p[3]} << 24);
-        default:
-            return core::readUnsigned(image, slot);
+        }
     }
+    return core::readUnsigned(image, slot);
 }
 
 void store(std::span<std::uint8_t> image, core::PdoSlot slot, std::uint32_t value) noexcept {
-    if (slot.bitOffset % 8 != 0 || slot.bitLength % 8 != 0 || slot.bitLength == 24) {
-        core::write(image, slot, value);
-        return;
-    }
     std::uint8_t* const p = image.data() + slot.bitOffset / 8;
-    for (unsigned i = 0; i < slot.bitLength / 8U; ++i) {
-        p[i] = static_cast<std::uint8_t>(value >> (8 * i));
+    const auto byte = [value](unsigned shift) { return static_cast<std::uint8_t>(value >> shift); };
+    if (onBytes(slot) && slot.bitLength == 16) {
+        p[0] = byte(0);
+        p[1] = byte(8);
+    } else if (onBytes(slot) && slot.bitLength == 8) {
+        p[0] = byte(0);
+    } else if (onBytes(slot) && slot.bitLength == 32) {
+        p[0] = byte(0);
+        p[1] = byte(8);
+        p[2] = byte(16);
+        p[3] = byte(24);
+    } else {
+        core::write(image, slot, value);
     }
 }
 
@@ -82,6 +89,7 @@ bool Drive::energised() const noexcept {
 }
 
 void Drive::readInputs() noexcept {
+    inputs_.bridged = inputs_.fresh ? 0 : inputs_.bridged + 1;
     inputs_.fresh = image_.health->inputsFresh;
     if (inputs_.fresh) {
         decode();

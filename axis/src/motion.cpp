@@ -2,6 +2,7 @@
 #include <cmath>
 #include <takt/axis/admit.hpp>
 #include <takt/axis/motion.hpp>
+#include <takt/planner/profile_query.hpp>
 
 namespace takt::axis {
 
@@ -16,6 +17,12 @@ namespace {
 
 /// A duration this little (relative to a cycle) above a whole number of cycles is rounding.
 constexpr double kStepTolerance = 1e-9;
+
+Dynamics gentler(const Dynamics& dynamics) noexcept {
+    Dynamics d = dynamics;
+    d.acceleration = d.deceleration = std::min(d.acceleration, d.deceleration);
+    return d;
+}
 
 State restAt(Position position) noexcept {
     return {position, Velocity{}, Acceleration{}};
@@ -90,28 +97,37 @@ ErrorId Motion::beginBraking(const Dynamics& dynamics) noexcept {
     const auto profile = planner::planStop(set_, braking(dynamics));
     if (!profile.ok()) return ErrorId::ProfileNotFeasible;
     // A stop too gentle for a software limit is made as hard as the axis may.
-    if (limitPassed(profile.value().end().position)) {
+    if (leavesUpward(profile.value()) || leavesDownward(profile.value())) {
         return beginStop() ? ErrorId::None : ErrorId::ProfileNotFeasible;
     }
     run(profile.value());
     return ErrorId::None;
 }
 
+/// Whether the way in the direction `wanted`, to `target` if it ends, has a turn in it.
+bool Motion::turnsOnTheWay(const Dynamics& dynamics, double wanted,
+                           std::optional<Position> target) const noexcept {
+    if (!underWay()) return false;
+    const auto stop = stopFrom(set_, dynamics);
+    if (!stop) return true;
+    const double present =
+        set_.velocity == Velocity{} ? set_.acceleration.count() : set_.velocity.count();
+    const double rest = (stop->end - set_.position).count();
+    if (present * wanted < 0.0 || rest * wanted < 0.0) return true;
+    if (!target) return false;
+    return wanted > 0.0 ? stop->highest > *target : stop->lowest < *target;
+}
+
 ErrorId Motion::beginPosition(Position target, const Dynamics& dynamics) noexcept {
     if (const ErrorId bad = checkTarget(*traits_, target); bad != ErrorId::None) return bad;
     const bool forward = target >= set_.position;
-    bool turns = false;
-    if (underWay()) {
-        const auto stop = stopFrom(set_, dynamics);
-        if (!stop) return ErrorId::ProfileNotFeasible;
-        if (limitPassed(*stop)) return ErrorId::SWLimitReached;
-        const bool runsBack = (set_.velocity > Velocity{}) != forward;
-        const bool overruns = forward ? *stop > target : *stop < target;
-        turns = runsBack || overruns;
-    }
+    const bool turns = turnsOnTheWay(dynamics, (target - set_.position).count(), target);
     const auto profile = planner::plan(set_, {planner::TargetKind::State, restAt(target)},
                                        moving(dynamics, forward, turns));
     if (!profile.ok()) return ErrorId::ProfileNotFeasible;
+    if (leavesUpward(profile.value()) || leavesDownward(profile.value())) {
+        return ErrorId::SWLimitReached;
+    }
     run(profile.value());
     target_ = target;
     return ErrorId::None;
@@ -119,12 +135,7 @@ ErrorId Motion::beginPosition(Position target, const Dynamics& dynamics) noexcep
 
 ErrorId Motion::beginVelocity(const Dynamics& dynamics) noexcept {
     const Velocity wanted = dynamics.velocity;
-    if (underWay()) {
-        const auto stop = stopFrom(set_, dynamics);
-        if (!stop) return ErrorId::ProfileNotFeasible;
-        if (limitPassed(*stop)) return ErrorId::SWLimitReached;
-    }
-    const bool turns = set_.velocity.count() * wanted.count() < 0.0;
+    const bool turns = turnsOnTheWay(dynamics, wanted.count(), std::nullopt);
     const bool forward =
         set_.velocity == Velocity{} ? wanted >= Velocity{} : set_.velocity > Velocity{};
     Dynamics d = dynamics;
@@ -133,6 +144,10 @@ ErrorId Motion::beginVelocity(const Dynamics& dynamics) noexcept {
         planner::plan(set_, {planner::TargetKind::Velocity, {Position{}, wanted, Acceleration{}}},
                       moving(d, forward, turns));
     if (!profile.ok()) return ErrorId::ProfileNotFeasible;
+    // In the direction it will go for ever the limit is watched step by step, see next().
+    const bool leaves = (wanted <= Velocity{} && leavesUpward(profile.value())) ||
+                        (wanted >= Velocity{} && leavesDownward(profile.value()));
+    if (leaves) return ErrorId::SWLimitReached;
     run(profile.value());
     endsAtRest_ = wanted == Velocity{};
     guardVelocity(dynamics);
@@ -148,38 +163,40 @@ void Motion::guardVelocity(const Dynamics& dynamics) noexcept {
     if (!stop) return;  // then the set position itself is watched
     guard_ = *limit;
     guardDynamics_ = dynamics;
-    stopDistance_ = *stop - Position{};
+    stopDistance_ = stop->end - Position{};
     guarded_ = true;
     const Position reached = profile_.end().position + stopDistance_;
     guardEarly_ = wanted > Velocity{} ? reached > guard_ : reached < guard_;
 }
 
 bool Motion::passesGuard(const State& state) const noexcept {
-    std::optional<Position> stop;
-    if (finished()) {
-        stop = state.position + stopDistance_;
-    } else if (guardEarly_) {
-        stop = stopFrom(state, guardDynamics_);
+    const bool up = guardDynamics_.velocity > Velocity{};
+    Position farthest = state.position + stopDistance_;
+    if (!finished()) {
+        if (!guardEarly_) return false;
+        const auto stop = stopFrom(state, guardDynamics_);
+        if (!stop) return true;
+        farthest = up ? stop->highest : stop->lowest;
     }
-    if (!stop) return false;
-    return guardDynamics_.velocity > Velocity{} ? *stop > guard_ : *stop < guard_;
+    return up ? farthest > guard_ : farthest < guard_;
 }
 
 void Motion::turnToLimit() noexcept {
-    guarded_ = false;
-    limitHit_ = true;
     Dynamics d = guardDynamics_;
     const bool forward = d.velocity > Velocity{};
     d.velocity = Velocity{std::max(std::abs(d.velocity.count()), std::abs(set_.velocity.count()))};
     const auto profile = planner::plan(set_, {planner::TargetKind::State, restAt(guard_)},
                                        moving(d, forward, false));
-    if (profile.ok()) {
+    const bool fits =
+        profile.ok() && !leavesUpward(profile.value()) && !leavesDownward(profile.value());
+    if (fits) {
         run(profile.value());
-        limitHit_ = true;
-        target_ = guard_;
-    } else if (beginStop()) {
-        limitHit_ = true;
+    } else {
+        guarded_ = false;
+        if (!beginStop()) return;  // then the set position itself is watched
     }
+    limitHit_ = true;
+    step_ = 1;
 }
 
 State Motion::next() noexcept {
@@ -188,7 +205,6 @@ State Motion::next() noexcept {
     State state = stateAt(step_);
     if (guarded_ && passesGuard(state)) {
         turnToLimit();
-        step_ = 1;
         state = stateAt(step_);
     }
     return state;
@@ -224,20 +240,27 @@ void Motion::run(const planner::Profile& profile) noexcept {
     limitHit_ = false;
 }
 
-std::optional<Position> Motion::stopFrom(const State& from,
-                                         const Dynamics& dynamics) const noexcept {
+std::optional<Motion::Stop> Motion::stopFrom(const State& from,
+                                             const Dynamics& dynamics) const noexcept {
     const auto profile = planner::planStop(from, braking(dynamics));
     if (!profile.ok()) return std::nullopt;
-    return profile.value().end().position;
+    const planner::PositionExtremes extremes = planner::extremesOf(profile.value());
+    return Stop{profile.value().end().position, extremes.lowest, extremes.highest};
 }
 
-std::optional<Position> Motion::limitPassed(Position stopsAt) const noexcept {
-    const LimitParams& l = traits_->limits;
-    if (l.softPositive && stopsAt > *l.softPositive && stopsAt > set_.position)
-        return l.softPositive;
-    if (l.softNegative && stopsAt < *l.softNegative && stopsAt < set_.position)
-        return l.softNegative;
-    return std::nullopt;
+bool Motion::leavesUpward(const planner::Profile& profile) const noexcept {
+    const auto& limit = traits_->limits.softPositive;
+    if (!limit) return false;
+    // Half a count is rounding. A start outside is no offence, going farther out is.
+    const Position highest = planner::extremesOf(profile).highest;
+    return highest > *limit + traits_->resolution / 2.0 && highest > set_.position;
+}
+
+bool Motion::leavesDownward(const planner::Profile& profile) const noexcept {
+    const auto& limit = traits_->limits.softNegative;
+    if (!limit) return false;
+    const Position lowest = planner::extremesOf(profile).lowest;
+    return lowest < *limit - traits_->resolution / 2.0 && lowest < set_.position;
 }
 
 planner::Limits Motion::braking(const Dynamics& d) const noexcept {
@@ -250,7 +273,7 @@ planner::Limits Motion::moving(const Dynamics& d, bool forward, bool turns) cons
     // way turns, one sign of acceleration does both, so the smaller limit holds.
     Acceleration up = forward ? d.acceleration : d.deceleration;
     Acceleration down = forward ? d.deceleration : d.acceleration;
-    if (turns) up = down = std::min(d.acceleration, d.deceleration);
+    if (turns) up = down = gentler(d).deceleration;
     return {d.velocity, -d.velocity, up, -down, d.jerk};
 }
 
@@ -275,7 +298,8 @@ Position Motion::moduloTarget(const Command& command, const Dynamics& dynamics) 
     if (underWay()) {
         // Not to be stopped in time: as many more turns as braking takes.
         const auto stop = stopFrom(set_, dynamics);
-        const double braking = stop ? (*stop - set_.position).count() : 0.0;
+        const Position farthest = stop ? (up ? stop->highest : stop->lowest) : set_.position;
+        const double braking = (farthest - set_.position).count();
         const double missing = up ? braking - travel : travel - braking;
         if (missing > 0.0) travel += (up ? period : -period) * std::ceil(missing / period);
     }

@@ -145,7 +145,8 @@ ObjectEntryDescription makeEntry(const TypeMember& member, const EntryFlags& obj
 /// <Info><SubItem> elements belong to the members by name or, failing that, by order.
 void readMemberInfos(XmlElement info, ObjectDescription& object, const EsiValues& values) {
     const std::vector<XmlElement> items = info.children("SubItem");
-    for (std::size_t i = 0; i < items.size(); ++i) {
+    constexpr std::size_t MostItems = 256;  // there are no more sub-indices
+    for (std::size_t i = 0; i < std::min(items.size(), MostItems); ++i) {
         const std::string name = englishName(items[i]);
         const auto named =
             std::find_if(object.entries.begin(), object.entries.end(),
@@ -186,6 +187,8 @@ ObjectDescription readObject(XmlElement element, const TypeTable& types, const E
 }  // namespace
 
 std::vector<ObjectDescription> readDictionary(XmlElement device, const EsiValues& values) {
+    constexpr std::size_t MostEntries = 100'000;
+    std::size_t entries = 0;
     std::vector<ObjectDescription> objects;
     for (const XmlElement profile : device.children("Profile")) {
         if (const XmlElement file = profile.child("DictionaryFile"); file.present()) {
@@ -196,6 +199,11 @@ std::vector<ObjectDescription> readDictionary(XmlElement device, const EsiValues
         const TypeTable types{dictionary, values};
         for (const XmlElement element : dictionary.child("Objects").children("Object")) {
             objects.push_back(readObject(element, types, values));
+            entries += objects.back().entries.size();
+            if (entries <= MostEntries) continue;
+            values.error(element.line(), "the object dictionary is too large",
+                         "at most 100000 entries");
+            return {};
         }
     }
     std::stable_sort(objects.begin(), objects.end(),

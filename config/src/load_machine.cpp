@@ -25,6 +25,15 @@ std::optional<std::filesystem::path> findLibrary(const std::filesystem::path& li
     return std::nullopt;
 }
 
+/// The children of a name, none of them if there are more than any machine has.
+std::vector<XmlElement> boundedChildren(ElementReader& machine, std::string_view name) {
+    constexpr std::size_t Most = 1000;
+    std::vector<XmlElement> elements = machine.children(name);
+    if (elements.size() <= Most) return elements;
+    machine.error({}, fmt::format("there are {} <{}>", elements.size(), name), "at most 1000");
+    return {};
+}
+
 /// Reports names that stand twice among the elements of one kind.
 class UniqueNames {
 public:
@@ -47,7 +56,7 @@ private:
 std::vector<AxisPart> readAxes(ElementReader& machine, NetworkPart& network) {
     std::vector<AxisPart> axes;
     UniqueNames names{"an axis"};
-    for (const XmlElement element : machine.children("Axis")) {
+    for (const XmlElement element : boundedChildren(machine, "Axis")) {
         axes.push_back(
             readAxis({element, "axis", machine.place().file, machine.diagnostics()}, network));
         names.add(axes.back().params.name, axes.back().reader);
@@ -61,12 +70,13 @@ std::vector<AxisPart> readAxes(ElementReader& machine, NetworkPart& network) {
     return axes;
 }
 
-std::vector<program::ProgramParams> readPrograms(ElementReader& machine, const Folders& folders) {
+std::vector<program::ProgramParams> readPrograms(ElementReader& machine, const Folders& folders,
+                                                 ProgramLibraries libraries) {
     std::vector<program::ProgramParams> programs;
     UniqueNames names{"a program"};
-    for (const XmlElement element : machine.children("Program")) {
+    for (const XmlElement element : boundedChildren(machine, "Program")) {
         const ElementReader reader{element, "program", machine.place().file, machine.diagnostics()};
-        programs.push_back(readProgram(reader, folders));
+        programs.push_back(readProgram(reader, folders, libraries));
         ElementReader named = reader;
         named.relabel(fmt::format("program '{}'", programs.back().name));
         names.add(programs.back().name, named);
@@ -83,7 +93,7 @@ void noteIdleSlaves(const NetworkPart& network) {
 }
 
 MachineConfig readMachine(const XmlDocument& document, const Folders& librarySearch,
-                          Diagnostics& diagnostics) {
+                          ProgramLibraries libraries, Diagnostics& diagnostics) {
     const std::filesystem::path folder = std::filesystem::path{document.file()}.parent_path();
     MachineConfig machine;
     ElementReader root{document.root(), "machine", document.file(), diagnostics};
@@ -93,16 +103,21 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     const std::vector<AxisPart> axes = readAxes(root, network);
     Folders folders{folder};
     folders.insert(folders.end(), librarySearch.begin(), librarySearch.end());
-    machine.programs = readPrograms(root, folders);
+    machine.programs = readPrograms(root, folders, libraries);
     machine.machineStop = readMachineStop(root.childReader("MachineStop"), network, axes);
     machine.twin = readTwin(root.childReader("Twin"), network, axes);
+    readRealtime(root.childReader("Realtime"), machine.scheduler);
     noteIdleSlaves(network);
     root.finish();
     machine.network = std::move(network.params);
     machine.scheduler.cycle = machine.network.cycle;
     for (SlavePart& slave : network.slaves)
         machine.network.slaves.push_back(std::move(slave.params));
-    for (const AxisPart& axis : axes) machine.axes.push_back(axis.params);
+    for (const AxisPart& axis : axes) {
+        machine.axes.push_back(axis.params);
+        // One number for the bus and its axes: n_lost.
+        machine.axes.back().supervision.lostCycles = machine.network.lostLimit;
+    }
     return machine;
 }
 
@@ -142,7 +157,8 @@ void addSchemaMessages(const XmlDocument& document, Diagnostics& diagnostics) {
 
 }  // namespace
 
-program::ProgramParams readProgram(ElementReader reader, const Folders& folders) {
+program::ProgramParams readProgram(ElementReader reader, const Folders& folders,
+                                   ProgramLibraries libraries) {
     program::ProgramParams program;
     program.origin = format(reader.place());
     const auto name = reader.name("name");
@@ -158,6 +174,10 @@ program::ProgramParams readProgram(ElementReader reader, const Folders& folders)
         reader.error("budget", "a program cannot have more than the whole cycle", "up to 100 %");
     }
     if (!library) return program;
+    if (libraries == ProgramLibraries::NotNeeded) {
+        program.library = *library;
+        return program;
+    }
     if (const auto found = findLibrary(*library, folders)) {
         program.library = found->string();
         return program;
@@ -173,7 +193,8 @@ program::ProgramParams readProgram(ElementReader reader, const Folders& folders)
     return program;
 }
 
-LoadResult loadMachine(const std::filesystem::path& file, const Folders& librarySearch) {
+LoadResult loadMachine(const std::filesystem::path& file, const Folders& librarySearch,
+                       ProgramLibraries libraries) {
     LoadResult result;
     const auto document = loadXml(file, MaxMachineFile, result.diagnostics);
     if (!document) return result;
@@ -184,7 +205,7 @@ LoadResult loadMachine(const std::filesystem::path& file, const Folders& library
             "<Machine>");
         return result;
     }
-    MachineConfig machine = readMachine(*document, librarySearch, result.diagnostics);
+    MachineConfig machine = readMachine(*document, librarySearch, libraries, result.diagnostics);
     addSchemaMessages(*document, result.diagnostics);
     result.diagnostics.sort();
     if (!result.diagnostics.hasErrors()) result.machine = std::move(machine);

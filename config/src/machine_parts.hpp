@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <takt/config/load_machine.hpp>
 #include <takt/config/machine_config.hpp>
 #include <vector>
 
@@ -72,7 +73,11 @@ void addDriveObjects(SlavePart& slave, const AxisPart& axis, std::uint32_t lostL
 
 /// Reads a <Program>; its library is looked for in `folders`, in order.
 [[nodiscard]] program::ProgramParams readProgram(ElementReader reader,
-                                                 const std::vector<std::filesystem::path>& folders);
+                                                 const std::vector<std::filesystem::path>& folders,
+                                                 ProgramLibraries libraries);
+
+/// Reads <Realtime>: how the cycle runs on a real network.
+void readRealtime(ElementReader reader, scheduler::SchedulerParams& params);
 
 /// Position, velocity, acceleration and jerk in the user unit of an axis.
 struct UnitDimensions {

@@ -18,7 +18,7 @@ void readDrive(AxisPart& axis, NetworkPart& network) {
     const auto speed = reader.quantity("maxSpeed", Dimension::MotorSpeed, Sign::Positive);
     if (speed) drive.maxMotorSpeed = core::Quantity<0, -1>{speed->value};
     axis.params.supervision.driveDelayCycles = static_cast<std::uint32_t>(
-        reader.integer("delayCycles", {0, 100}).value_or(axis.params.supervision.driveDelayCycles));
+        reader.integer("delayCycles", {0, 30}).value_or(axis.params.supervision.driveDelayCycles));
     const bool confirmed =
         reader.choice<bool>("lostCommunication", {{"confirmed", true}}).value_or(false);
     reader.finish();

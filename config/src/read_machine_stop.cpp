@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <takt/core/cia402.hpp>
-#include <takt/fieldbus/pdo_layout.hpp>
+#include <takt/fieldbus/fieldbus_params.hpp>
 
 #include "machine_parts.hpp"
 
@@ -44,6 +44,16 @@ void readPlace(ElementReader& reader, const std::vector<AxisPart>& axes,
     input.index = core::cia402::DigitalInputs;
 }
 
+/// Bits of an object among a slave's inputs, 0 when it is not mapped.
+unsigned mappedBits(const fieldbus::SlaveParams& slave, std::uint16_t index, std::uint8_t subindex) {
+    for (const fieldbus::PdoParams& pdo : slave.inputs) {
+        for (const fieldbus::PdoEntryParams& entry : pdo.entries) {
+            if (entry.index == index && entry.subindex == subindex) return entry.bits;
+        }
+    }
+    return 0;
+}
+
 void checkMapped(const ElementReader& reader, NetworkPart& network,
                  const axis::MachineStopInput& input) {
     if (input.slave.empty() || input.index == 0) return;  // reported already
@@ -53,15 +63,13 @@ void checkMapped(const ElementReader& reader, NetworkPart& network,
         return;
     }
     if (!slave->params.device) return;
-    const core::PdoSlot slot = fieldbus::findEntry(slave->params, fieldbus::Direction::Inputs,
-                                                   input.index, input.subindex);
-    if (!slot.present()) {
+    const unsigned bits = mappedBits(slave->params, input.index, input.subindex);
+    if (bits == 0) {
         reader.error("", fmt::format("{:04X}h:{:02X} is not among the inputs of slave '{}'", input.index,
                                      input.subindex, input.slave),
                      "a mapped entry", "add it to an input PDO of the slave with <Pdo>");
-    } else if (input.bit >= slot.bitLength) {
-        reader.error("bit", fmt::format("the entry has {} bits", slot.bitLength),
-                     fmt::format("0 to {}", slot.bitLength - 1));
+    } else if (input.bit >= bits) {
+        reader.error("bit", fmt::format("the entry has {} bits", bits), fmt::format("0 to {}", bits - 1));
     }
 }
 

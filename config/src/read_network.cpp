@@ -243,8 +243,15 @@ void readSlaveElement(SlavePart& slave, Catalogue& catalogue,
 }
 
 void readSlaves(NetworkPart& network, Catalogue& catalogue) {
+    constexpr std::size_t MostSlaves = 1000;
+    const std::vector<XmlElement> elements = network.reader.children("Slave");
+    if (elements.empty() || elements.size() > MostSlaves) {
+        network.reader.error({}, fmt::format("the network has {} slaves", elements.size()),
+                             "1 to 1000 <Slave>");
+        return;
+    }
     std::map<std::string, int> lines;
-    for (const XmlElement element : network.reader.children("Slave")) {
+    for (const XmlElement element : elements) {
         SlavePart slave{
             {element, "slave", network.reader.place().file, network.reader.diagnostics()}};
         readSlaveElement(slave, catalogue, network.params);
@@ -257,11 +264,6 @@ void readSlaves(NetworkPart& network, Catalogue& catalogue) {
                 "each name once", "rename one of them");
         }
         network.slaves.push_back(std::move(slave));
-    }
-    constexpr std::size_t MostSlaves = 1000;
-    if (network.slaves.empty() || network.slaves.size() > MostSlaves) {
-        network.reader.error({}, fmt::format("the network has {} slaves", network.slaves.size()),
-                             "1 to 1000 <Slave>");
     }
 }
 

@@ -160,6 +160,7 @@ void readPdo(XmlElement element, SlavePart& slave, const std::array<Side, 2>& si
     PdoParams pdo{offered->index, defaultEntries(*offered), false};
     if (!entries.empty()) {
         std::vector<PdoEntryParams> wanted;
+        wanted.reserve(entries.size());
         for (const XmlElement entry : entries) wanted.push_back(readEntry(entry, slave, side));
         pdo.writeMapping =
             !std::equal(wanted.begin(), wanted.end(), pdo.entries.begin(), pdo.entries.end(), same);

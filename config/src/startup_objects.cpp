@@ -108,6 +108,7 @@ IntegerRange rangeOf(const ValueType& type, const wire::ObjectEntryDescription* 
 const ValueType* chooseType(ElementReader& reader, const wire::ObjectEntryDescription* entry,
                             const std::string& shown) {
     std::vector<std::pair<std::string, const ValueType*>> choices;
+    choices.reserve(Types.size());
     for (const ValueType& type : Types) choices.emplace_back(type.name, &type);
     const ValueType* const known = entry != nullptr ? typeOf(entry->type) : nullptr;
     const auto told = reader.choice<const ValueType*>(

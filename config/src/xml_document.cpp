@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -60,6 +62,20 @@ std::size_t findDeclaration(std::string_view text) noexcept {
         at = end == "<" ? next : text.find('<', next);
     }
     return at;
+}
+
+/// Where an element with more attributes than any real file has begins; npos = nowhere. The library
+/// compares every attribute with all before it, so their number must be bounded first.
+std::size_t findCrowdedTag(std::string_view text) noexcept {
+    constexpr std::ptrdiff_t MostAttributes = 1000;
+    for (std::size_t at = text.find('<'); at != std::string_view::npos;) {
+        const std::size_t next = text.find('<', at + 1);
+        const std::string_view tag = text.substr(at, next - at);
+        const bool element = tag.size() > 1 && tag[1] != '!' && tag[1] != '?' && tag[1] != '/';
+        if (element && std::count(tag.begin(), tag.end(), '=') > MostAttributes) return at;
+        at = next;
+    }
+    return std::string_view::npos;
 }
 
 int lineAt(std::string_view text, std::size_t offset) noexcept {
@@ -199,6 +215,11 @@ std::optional<XmlDocument> loadXml(const std::filesystem::path& file, std::size_
     if (const std::size_t at = findDeclaration(text); at != std::string::npos) {
         diagnostics.error({name, lineAt(text, at)}, "a document type declaration is not accepted",
                           "plain XML without <!DOCTYPE> and entities", "remove the declaration");
+        return std::nullopt;
+    }
+    if (const std::size_t at = findCrowdedTag(text); at != std::string::npos) {
+        diagnostics.error({name, lineAt(text, at)}, "an element has too many attributes",
+                          "at most 1000");
         return std::nullopt;
     }
     auto dom = std::make_unique<tinyxml2::XMLDocument>();

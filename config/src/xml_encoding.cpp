@@ -71,6 +71,18 @@ std::string declaredEncoding(std::string_view bytes) {
     return name;
 }
 
+/// By the byte order mark, or by how "<?" looks in 16 bits, else as declared; empty = nothing is
+/// told.
+std::string encodingOf(std::string_view bytes) {
+    const bool littleEndian =
+        bytes.starts_with("\xFF\xFE") || bytes.starts_with(std::string_view{"<\0?\0", 4});
+    const bool bigEndian =
+        bytes.starts_with("\xFE\xFF") || bytes.starts_with(std::string_view{"\0<\0?", 4});
+    if (littleEndian) return "UTF-16LE";
+    if (bigEndian) return "UTF-16BE";
+    return bytes.starts_with("\xEF\xBB\xBF") ? std::string{} : declaredEncoding(bytes);
+}
+
 struct BufferDeleter {
     void operator()(xmlBuffer* buffer) const noexcept { xmlBufferFree(buffer); }
 };
@@ -151,22 +163,11 @@ struct ValidatorDeleter {
 
 Utf8Text toUtf8(std::string_view bytes) {
     Utf8Text result;
-    if (bytes.starts_with("\xFF\xFE")) {
-        result = convertFrom("UTF-16LE", bytes);
-    } else if (bytes.starts_with("\xFE\xFF")) {
-        result = convertFrom("UTF-16BE", bytes);
-    } else if (bytes.starts_with(std::string_view{"<\0?\0", 4})) {
-        result = convertFrom("UTF-16LE", bytes);
-    } else if (bytes.starts_with(std::string_view{"\0<\0?", 4})) {
-        result = convertFrom("UTF-16BE", bytes);
+    const std::string encoding = encodingOf(bytes);
+    if (isUtf8Name(encoding)) {
+        result.text = std::string{bytes};
     } else {
-        const std::string encoding = declaredEncoding(bytes);
-        const bool marked = bytes.starts_with("\xEF\xBB\xBF");
-        if (marked || isUtf8Name(encoding)) {
-            result.text = std::string{bytes};
-        } else {
-            result = convertFrom(encoding, bytes);
-        }
+        result = convertFrom(encoding, bytes);
     }
     if (!result.problem.empty()) return result;
     dropMark(result.text);

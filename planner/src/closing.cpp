@@ -28,6 +28,15 @@ Cruise longestCruise(const Problem& p, const Pieces& pieces) noexcept {
     return best;
 }
 
+/// The exact state before a piece.
+ExactState stateBefore(const Problem& problem, const Pieces& pieces, std::size_t index) noexcept {
+    ExactState state;
+    state.v.high = problem.v0;
+    state.a.high = problem.a0;
+    for (std::size_t i = 0; i < index; ++i) state.advance(pieces.time[i], pieces.value[i]);
+    return state;
+}
+
 }  // namespace
 
 bool closeOnTarget(const Problem& problem, Pieces& pieces) noexcept {
@@ -35,15 +44,17 @@ bool closeOnTarget(const Problem& problem, Pieces& pieces) noexcept {
     // What an ulp of acceleration does on the way, against 1e-13 of the way.
     const double limit = std::max(problem.amax, -problem.amin);
     if (!(kEps * limit * cruise.time > 1e-13 * std::fabs(cruise.velocity))) return false;
-    ExactState state;
-    state.v.high = problem.v0;
-    state.a.high = problem.a0;
-    for (std::size_t i = 0; i < pieces.size; ++i) {
-        state.advance(pieces.time[i], pieces.value[i]);
+    std::size_t index = cruise.index;
+    const double left = stateBefore(problem, pieces, index).a.value();
+    if (left != 0.0 && pieces.size < Pieces::capacity) {
+        // Shorter than the resolution of any time stamp, so it costs no time.
+        pieces.insert(index++, std::fabs(left) / problem.jerk,
+                      left > 0.0 ? -problem.jerk : problem.jerk);
     }
-    const double miss = (state.p + DoubleDouble{-problem.distance, 0.0}).value();
+    const ExactState end = stateBefore(problem, pieces, pieces.size);
+    const double miss = (end.p + DoubleDouble{-problem.distance, 0.0}).value();
     const double change = miss / cruise.velocity;
-    if (std::fabs(change) <= 1e-6 * cruise.time) pieces.time[cruise.index] -= change;
+    if (std::fabs(change) <= kClip * cruise.time) pieces.time[index] -= change;
     return true;
 }
 

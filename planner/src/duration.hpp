@@ -1,5 +1,7 @@
 #pragma once
 
+#include <takt/core/fixed_vector.hpp>
+
 #include "extremal_curve.hpp"
 
 namespace takt::planner::detail {
@@ -20,6 +22,12 @@ struct Possible {
 
 /// The least possible duration >= notBefore.
 [[nodiscard]] Possible firstPossible(const Problem& problem, double notBefore) noexcept;
+
+/// Durations at which a target may begin or cease to be possible.
+using Marks = core::FixedVector<double, 24>;
+
+/// All crossings of both curves with the distance, and the ends of their blocks; in no order.
+void marks(const Problem& problem, Marks& out) noexcept;
 
 /// The profile of a fastest() or firstPossible() that is extremal.
 void piecesOf(const Problem& problem, const Possible& possible, Pieces& out) noexcept;

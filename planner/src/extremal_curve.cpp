@@ -75,6 +75,22 @@ double ExtremalCurve::tolerance(double u) const noexcept {
                 std::fabs(main_.kd) + std::fabs(other_.kd));
 }
 
+ExtremalCurve::Point ExtremalCurve::meeting(double u, double distance) const noexcept {
+    const Value v = at(u);
+    const double missing = distance - v.distance;
+    // The rounding of the velocities moves the beginning in time, hence in position by `pace` times
+    // that.
+    const double dc = 4.0 * kEps * (std::fabs(main_.vz) + std::fabs(other_.vz)) * invJerk_;
+    // One ramp begins at its start there, so the other one makes up for it.
+    const double free = startsOther(u) ? std::fabs(u) : std::sqrt(u * u + c_);
+    const double movable = free * free > dc ? dc / free : std::sqrt(dc);
+    const double pace = rate(u);
+    const double room = std::fabs(pace) * movable;
+    if (!(std::fabs(missing) <= tolerance(u) + room)) return {0.0, 0.0, 0.0, false};
+    const double shift = room > 0.0 && std::fabs(missing) <= room ? missing / pace : 0.0;
+    return {u, 0.0, v.duration + shift, true, shift};
+}
+
 double ExtremalCurve::bothHold() const noexcept {
     const double other = other_.full * other_.full - c_;
     return std::max(main_.full, other > 0.0 ? std::sqrt(other) : 0.0);
@@ -170,6 +186,16 @@ double ExtremalCurve::root(double lo, double hi, double distance) const noexcept
     return u;
 }
 
+double ExtremalCurve::anyRoot(double lo, double hi, double distance) const noexcept {
+    const bool rising = at(hi).distance > distance;
+    for (int i = 0; i < kMostSteps; ++i) {
+        const double middle = 0.5 * (lo + hi);
+        if (middle <= lo || middle >= hi) break;
+        ((at(middle).distance > distance) == rising ? hi : lo) = middle;
+    }
+    return 0.5 * (lo + hi);
+}
+
 double ExtremalCurve::rateZero(double lo, double hi) const noexcept {
     const bool rising = rate(hi) > 0.0;
     for (int i = 0; i < kMostSteps; ++i) {
@@ -210,8 +236,7 @@ ExtremalCurve::Point ExtremalCurve::crossingInLow(double u, double distance) con
     }
     const double missing = distance - at(end).distance;
     if (missing <= 0.0) return point(root(from, end, distance));
-    if (missing <= tolerance(end)) return point(end);
-    return {0.0, 0.0, 0.0, false};
+    return meeting(end, distance);
 }
 
 ExtremalCurve::Point ExtremalCurve::crossingInHigh(double u, double distance) const noexcept {
@@ -231,14 +256,22 @@ void ExtremalCurve::pieces(const Point& p, double sign, Pieces& out) const noexc
     double both = u < 0.0 ? c_ / (uo - u) : 0.0;
     double hold = 0.0;
     double holdOther = 0.0;
+    const double shift = startsOther(p.u) ? 0.0 : p.shift;
+    const double shiftMain = p.shift - shift;
     if (u > main_.full) {
-        hold = (uu - main_.full * main_.full) / main_.full;
+        hold = (uu - main_.full * main_.full) / main_.full + shiftMain;
         u = main_.full;
+    } else {
+        u += 0.5 * shiftMain;
+        both += 0.5 * shiftMain;
     }
     if (uo > other_.full) {
-        holdOther = (uu + c_ - other_.full * other_.full) / other_.full;
+        holdOther = (uu + c_ - other_.full * other_.full) / other_.full + shift;
         if (u < 0.0) both = other_.full + u;
         uo = other_.full;
+    } else {
+        uo += 0.5 * shift;
+        both += 0.5 * shift;
     }
     const double firstU = mainIsLast_ ? uo : u;
     const double lastU = mainIsLast_ ? u : uo;

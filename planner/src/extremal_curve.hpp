@@ -23,6 +23,7 @@ public:
         double cruise;
         double duration;
         bool found;
+        double shift{0.0};  ///< what one ramp takes longer to make up for rounded velocities
     };
     struct Value {
         double distance;
@@ -40,12 +41,17 @@ public:
     [[nodiscard]] double lowEnd() const noexcept { return -star_; }
     [[nodiscard]] double highBegin() const noexcept { return high_; }
     [[nodiscard]] double top() const noexcept { return top_; }
+    [[nodiscard]] double topVelocity() const noexcept { return vtop_; }
 
     [[nodiscard]] Value at(double u) const noexcept;
     /// dp/dT
     [[nodiscard]] double rate(double u) const noexcept;
     /// What rounding may do to the distance at u, with the tolerance of the problem.
     [[nodiscard]] double tolerance(double u) const noexcept;
+
+    /// At the beginning of a block, where two times must meet velocity and position at once: the
+    /// profile at u if it goes by `distance` up to rounding of the given numbers, else not found.
+    [[nodiscard]] Point meeting(double u, double distance) const noexcept;
 
     /// The profile that takes exactly `duration`; not found below the least duration and in the
     /// gap.
@@ -58,6 +64,8 @@ public:
     [[nodiscard]] Point crossingInHigh(double u, double distance) const noexcept;
     /// Within [lo, hi], where the sign of at(u).distance - distance changes.
     [[nodiscard]] double root(double lo, double hi, double distance) const noexcept;
+    /// The same where the distance may also fall; by halving.
+    [[nodiscard]] double anyRoot(double lo, double hi, double distance) const noexcept;
     /// The zero of the rate in [lo, hi], whose ends have different signs of it.
     [[nodiscard]] double rateZero(double lo, double hi) const noexcept;
     /// Where the rate is least on [lo, hi], lo < hi <= 0.
@@ -68,6 +76,10 @@ public:
     void pieces(const Point& point, double sign, Pieces& out) const noexcept;
 
 private:
+    /// The other ramp, not the main one, has no first piece at u.
+    [[nodiscard]] bool startsOther(double u) const noexcept {
+        return std::fabs(u) == star_ && u > main_.kt;
+    }
     [[nodiscard]] double rootBothHolding(double distance) const noexcept;
     [[nodiscard]] double bothHold() const noexcept;
     [[nodiscard]] double firstGuess(double lo, const Value& atLo, double hi, const Value& atHi,

@@ -26,21 +26,24 @@ struct Problem {
     double jerk;
     /// Absolute position error that the rounding of the given positions already contains.
     double tolerance;
+    /// How near to the target counts as there, if no more than the accelerations is left to change.
+    double nearDistance;
+    double nearVelocity;
 };
 
 /// Signs of everything swapped: the least position of a problem is the greatest of its mirror
 /// image.
 [[nodiscard]] inline Problem mirrored(const Problem& p) noexcept {
-    return {-p.v0,   -p.a0,   -p.vf,   -p.af,  -p.distance, -p.vmin,
-            -p.vmax, -p.amin, -p.amax, p.jerk, p.tolerance};
+    return {-p.v0,   -p.a0,   -p.vf,  -p.af,       -p.distance,    -p.vmin,       -p.vmax,
+            -p.amin, -p.amax, p.jerk, p.tolerance, p.nearDistance, p.nearVelocity};
 }
 
-/// Up to `Capacity` pieces of constant jerk (third order) or constant acceleration (second order).
+/// Up to `capacity` pieces of constant jerk (third order) or constant acceleration (second order).
 struct Pieces {
-    static constexpr std::size_t Capacity = 20;
+    static constexpr std::size_t capacity = 20;
 
-    std::array<double, Capacity> time;
-    std::array<double, Capacity> value;
+    std::array<double, capacity> time;
+    std::array<double, capacity> value;
     std::size_t size{0};
 
     /// Pieces of no length are left out; negative lengths are rounding.
@@ -50,13 +53,19 @@ struct Pieces {
         value[size] = what;
         ++size;
     }
-};
-
-/// Pieces and what they take together; `found` is false where there is no answer.
-struct Solution {
-    Pieces pieces;
-    double duration{0.0};
-    bool found{false};
+    /// Puts a piece before the one at `index`. \pre size < capacity
+    void insert(std::size_t index, double duration, double what) noexcept {
+        for (std::size_t i = size; i > index; --i) {
+            time[i] = time[i - 1];
+            value[i] = value[i - 1];
+        }
+        time[index] = duration;
+        value[index] = what;
+        ++size;
+    }
+    void add(const Pieces& other) noexcept {
+        for (std::size_t i = 0; i < other.size; ++i) add(other.time[i], other.value[i]);
+    }
 };
 
 }  // namespace takt::planner::detail

@@ -54,6 +54,82 @@ void ProfileBuilder::withJerksExactly(const State& from, const detail::Pieces& p
     out.end_ = rounded();
 }
 
+void ProfileBuilder::withAccelerations(const State& from, const detail::Pieces& pieces,
+                                       Profile& out) noexcept {
+    double t = 0.0;
+    double p = 0.0;
+    double v = from.velocity.count();
+    for (std::size_t i = 0; i < pieces.size; ++i) {
+        const double dt = pieces.time[i];
+        const double a = pieces.value[i];
+        out.segments_[i] = {Seconds{t},
+                            Seconds{dt},
+                            {from.position + Distance{p}, Velocity{v}, Acceleration{a}},
+                            Jerk{}};
+        t += dt;
+        p += dt * (v + 0.5 * dt * a);
+        v += dt * a;
+    }
+    out.size_ = static_cast<std::uint8_t>(pieces.size);
+    out.duration_ = Seconds{t};
+    out.end_ = {from.position + Distance{p}, Velocity{v}, Acceleration{}};
+}
+
+void ProfileBuilder::withVelocities(const State& from, const detail::Pieces& pieces,
+                                    Profile& out) noexcept {
+    double t = 0.0;
+    double p = 0.0;
+    for (std::size_t i = 0; i < pieces.size; ++i) {
+        const double dt = pieces.time[i];
+        out.segments_[i] = {Seconds{t},
+                            Seconds{dt},
+                            {from.position + Distance{p}, Velocity{pieces.value[i]}, {}},
+                            Jerk{}};
+        t += dt;
+        p += dt * pieces.value[i];
+    }
+    out.size_ = static_cast<std::uint8_t>(pieces.size);
+    out.duration_ = Seconds{t};
+    out.end_ = {from.position + Distance{p}, {}, {}};
+}
+
+void ProfileBuilder::scaled(const Profile& line, double share, const State& from, const State& end,
+                            Profile& out) noexcept {
+    if (line.size_ == 0) {
+        out = Profile::holding(end);
+        return;
+    }
+    const core::Position start = line.segments_[0].from.position;
+    for (std::size_t i = 0; i < line.size_; ++i) {
+        const Segment& s = line.segments_[i];
+        out.segments_[i] = {s.start,
+                            s.duration,
+                            {from.position + (s.from.position - start) * share,
+                             s.from.velocity * share, s.from.acceleration * share},
+                            s.jerk * share};
+    }
+    out.size_ = line.size_;
+    out.duration_ = line.duration_;
+    out.end_ = end;
+}
+
+bool ProfileBuilder::joined(const Profile& first, const Profile& second, Profile& out) noexcept {
+    if (first.size_ + second.size_ > Profile::capacity) return false;
+    out = first;
+    for (std::size_t i = 0; i < second.size_; ++i) {
+        Segment segment = second.segments_[i];
+        segment.start += first.duration_;
+        out.segments_[out.size_++] = segment;
+    }
+    out.duration_ = first.duration_ + second.duration_;
+    out.end_ = second.end_;
+    return true;
+}
+
+void ProfileBuilder::setDuration(double duration, Profile& profile) noexcept {
+    profile.duration_ = Seconds{duration};
+}
+
 void ProfileBuilder::closeOn(const State& end, Profile& profile) noexcept {
     std::size_t longest = 0;
     for (std::size_t i = 1; i < profile.size_; ++i) {
@@ -62,7 +138,8 @@ void ProfileBuilder::closeOn(const State& end, Profile& profile) noexcept {
     double p = 0.0;
     double v = end.velocity.count();
     double a = end.acceleration.count();
-    for (std::size_t i = profile.size_; i-- > longest + 1;) {
+    const bool smooth = profile.size_ > 0 && profile.segments_[0].jerk.count() != 0.0;
+    for (std::size_t i = profile.size_; smooth && i-- > longest + 1;) {
         Segment& segment = profile.segments_[i];
         const double dt = segment.duration.count();
         const double j = segment.jerk.count();

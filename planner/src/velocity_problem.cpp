@@ -88,18 +88,20 @@ double levelFor(const Problem& p, double duration, const Range& range, double ga
     return std::clamp(level, range.low, range.high);
 }
 
-/// The end of the blocked interval that follows the shortest durations, or zero: with both
-/// accelerations positive a dip gains velocity too, and longer ones too much of it.
-double gapEnd(const Problem& p, double notBefore) noexcept {
+/// A blocked interval; none if the end is zero.
+struct Gap {
+    double begin, end;
+};
+
+/// The gap that follows the shortest durations: with both accelerations positive a dip gains
+/// velocity too, and a longer one too much of it.
+Gap gapOf(const Problem& p) noexcept {
     const double gain = p.vf - p.v0;
-    if (!(p.a0 > 0.0 && p.af > 0.0) || gain < directGain(p)) return 0.0;
+    if (!(p.a0 > 0.0 && p.af > 0.0) || gain < directGain(p)) return {0.0, 0.0};
     const double square = 0.5 * (p.a0 * p.a0 + p.af * p.af) - p.jerk * gain;
-    if (!(square > 0.0)) return 0.0;
+    if (!(square > 0.0)) return {0.0, 0.0};
     const double dip = std::sqrt(square);
-    if (notBefore <= (p.a0 + p.af - 2.0 * dip) / p.jerk) return 0.0;
-    Problem behind = mirrored(p);  // over a valley below zero
-    const Swing swing = overPeak(behind);
-    return swing.duration();
+    return {(p.a0 + p.af - 2.0 * dip) / p.jerk, overPeak(mirrored(p)).duration()};
 }
 
 }  // namespace
@@ -121,9 +123,17 @@ double firstPossibleVelocity(const Problem& problem, double notBefore) noexcept 
     Pieces unused;
     const double least = fastestVelocity(problem, unused);
     if (notBefore <= least) return least;
-    const double behind =
-        std::max(gapEnd(problem, notBefore), gapEnd(mirrored(problem), notBefore));
-    return std::max(notBefore, behind);
+    for (const Gap& gap : {gapOf(problem), gapOf(mirrored(problem))}) {
+        if (notBefore > gap.begin && notBefore < gap.end) return gap.end;
+    }
+    return notBefore;
+}
+
+void velocityMarks(const Problem& problem, Marks& out) noexcept {
+    for (const Gap& gap : {gapOf(problem), gapOf(mirrored(problem))}) {
+        static_cast<void>(out.push(gap.begin));
+        static_cast<void>(out.push(gap.end));
+    }
 }
 
 bool velocityLasting(const Problem& problem, double duration, Pieces& out) noexcept {

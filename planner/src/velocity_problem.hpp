@@ -1,6 +1,6 @@
 #pragma once
 
-#include "problem.hpp"
+#include "duration.hpp"
 
 namespace takt::planner::detail {
 
@@ -10,6 +10,9 @@ double fastestVelocity(const Problem& problem, Pieces& out) noexcept;
 
 /// The least possible duration of the velocity problem that is not below `notBefore`.
 [[nodiscard]] double firstPossibleVelocity(const Problem& problem, double notBefore) noexcept;
+
+/// Durations at which the problem may begin or cease to be possible.
+void velocityMarks(const Problem& problem, Marks& out) noexcept;
 
 /// A change of velocity that takes exactly `duration`; false if that is not possible.
 [[nodiscard]] bool velocityLasting(const Problem& problem, double duration, Pieces& out) noexcept;

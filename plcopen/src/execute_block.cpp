@@ -13,15 +13,10 @@ constexpr bool pending(CommandPhase phase) noexcept {
 
 }  // namespace
 
-CommandPhase ExecuteBlock::run(axis::AxisRef axis, const axis::Command& request) noexcept {
-    const bool edge = Execute && !lastExecute_;
-    if (edge) {
-        start(axis, request);
-    } else if (pending(status_.phase)) {
-        follow();
-    }
+CommandPhase ExecuteBlock::show(bool edge) noexcept {
+    pending_ = pending(status_.phase);
     // An end that has been shown goes with Execute; one that comes later is shown for one call.
-    if (!pending(status_.phase)) {
+    if (!pending_) {
         if (!edge && shown_ && !Execute) status_ = {};
         shown_ = status_.phase != CommandPhase::Unknown;
     } else {
@@ -29,7 +24,7 @@ CommandPhase ExecuteBlock::run(axis::AxisRef axis, const axis::Command& request)
     }
     lastExecute_ = Execute;
 
-    Busy = pending(status_.phase);
+    Busy = pending_;
     Error = status_.phase == CommandPhase::Error;
     ErrorID = Error ? status_.error : ErrorId::None;
     return status_.phase;
@@ -61,13 +56,6 @@ void ExecuteBlock::follow() noexcept {
     if (status_.phase == CommandPhase::Unknown) {
         status_ = {CommandPhase::Error, ErrorId::OutcomeUnknown};
     }
-}
-
-CommandPhase MotionBlock::runMotion(axis::AxisRef axis, const axis::Command& request) noexcept {
-    const CommandPhase phase = run(axis, request);
-    Active = phase == CommandPhase::Active;
-    CommandAborted = phase == CommandPhase::Aborted;
-    return phase;
 }
 
 }  // namespace takt::plcopen

@@ -3,11 +3,14 @@
 namespace takt::plcopen {
 
 void MC_Home::operator()(axis::AxisRef axis) noexcept {
-    axis::Command request;
-    request.kind = axis::CommandKind::Home;
-    request.bufferMode = toAxis(BufferMode);
-    request.position = core::Position{Position};
-    Done = runMotion(axis, request) == axis::CommandPhase::Done;
+    const axis::CommandPhase phase = runMotion(axis, [this]() noexcept {
+        axis::Command command;
+        command.kind = axis::CommandKind::Home;
+        command.bufferMode = toAxis(BufferMode);
+        command.position = core::Position{Position};
+        return command;
+    });
+    Done = phase == axis::CommandPhase::Done;
 }
 
 }  // namespace takt::plcopen

@@ -12,22 +12,30 @@ axis::Command MoveBlock::request(axis::CommandKind kind) const noexcept {
 }
 
 void MC_MoveAbsolute::operator()(axis::AxisRef axis) noexcept {
-    axis::Command command = request(axis::CommandKind::MoveAbsolute);
-    command.position = core::Position{Position};
-    command.direction = toAxis(Direction);
-    Done = runMotion(axis, command) == axis::CommandPhase::Done;
+    const axis::CommandPhase phase = runMotion(axis, [this]() noexcept {
+        axis::Command command = request(axis::CommandKind::MoveAbsolute);
+        command.position = core::Position{Position};
+        command.direction = toAxis(Direction);
+        return command;
+    });
+    Done = phase == axis::CommandPhase::Done;
 }
 
 void MC_MoveRelative::operator()(axis::AxisRef axis) noexcept {
-    axis::Command command = request(axis::CommandKind::MoveRelative);
-    command.distance = core::Distance{Distance};
-    Done = runMotion(axis, command) == axis::CommandPhase::Done;
+    const axis::CommandPhase phase = runMotion(axis, [this]() noexcept {
+        axis::Command command = request(axis::CommandKind::MoveRelative);
+        command.distance = core::Distance{Distance};
+        return command;
+    });
+    Done = phase == axis::CommandPhase::Done;
 }
 
 void MC_MoveVelocity::operator()(axis::AxisRef axis) noexcept {
-    axis::Command request = this->request(axis::CommandKind::MoveVelocity);
-    request.direction = toAxis(Direction);
-    const axis::CommandPhase phase = runMotion(axis, request);
+    const axis::CommandPhase phase = runMotion(axis, [this]() noexcept {
+        axis::Command request = this->request(axis::CommandKind::MoveVelocity);
+        request.direction = toAxis(Direction);
+        return request;
+    });
     InVelocity = phase == axis::CommandPhase::Active && axis.valid() &&
                  axis.port().view().active == command() && axis.port().view().inVelocity;
 }

@@ -30,9 +30,12 @@ void MC_Power::operator()(axis::AxisRef axis) noexcept {
 }
 
 void MC_Reset::operator()(axis::AxisRef axis) noexcept {
-    axis::Command request;
-    request.kind = axis::CommandKind::Reset;
-    Done = run(axis, request) == axis::CommandPhase::Done;
+    const axis::CommandPhase phase = run(axis, []() noexcept {
+        axis::Command command;
+        command.kind = axis::CommandKind::Reset;
+        return command;
+    });
+    Done = phase == axis::CommandPhase::Done;
 }
 
 }  // namespace takt::plcopen

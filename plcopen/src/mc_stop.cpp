@@ -5,13 +5,14 @@ namespace takt::plcopen {
 using axis::CommandPhase;
 
 void MC_Stop::operator()(axis::AxisRef axis) noexcept {
-    axis::Command request;
-    request.kind = axis::CommandKind::Stop;
-    request.dynamics.deceleration = core::Acceleration{Deceleration};
-    request.dynamics.jerk = core::Jerk{Jerk};
-
     if (!Execute && wasExecuted()) release_ = true;
-    const CommandPhase phase = run(axis, request);
+    const CommandPhase phase = run(axis, [this]() noexcept {
+        axis::Command command;
+        command.kind = axis::CommandKind::Stop;
+        command.dynamics.deceleration = core::Acceleration{Deceleration};
+        command.dynamics.jerk = core::Jerk{Jerk};
+        return command;
+    });
     Done = phase == CommandPhase::Done;
     CommandAborted = phase == CommandPhase::Aborted;
     if (Execute) release_ = false;
@@ -32,12 +33,15 @@ void MC_Stop::release(const axis::AxisRef& axis) noexcept {
 }
 
 void MC_Halt::operator()(axis::AxisRef axis) noexcept {
-    axis::Command request;
-    request.kind = axis::CommandKind::Halt;
-    request.bufferMode = toAxis(BufferMode);
-    request.dynamics.deceleration = core::Acceleration{Deceleration};
-    request.dynamics.jerk = core::Jerk{Jerk};
-    Done = runMotion(axis, request) == CommandPhase::Done;
+    const CommandPhase phase = runMotion(axis, [this]() noexcept {
+        axis::Command command;
+        command.kind = axis::CommandKind::Halt;
+        command.bufferMode = toAxis(BufferMode);
+        command.dynamics.deceleration = core::Acceleration{Deceleration};
+        command.dynamics.jerk = core::Jerk{Jerk};
+        return command;
+    });
+    Done = phase == CommandPhase::Done;
 }
 
 }  // namespace takt::plcopen

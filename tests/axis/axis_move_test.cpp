@@ -90,6 +90,16 @@ TEST(AxisMove, FirstTargetAfterEnablingIsTheActualPosition) {
     EXPECT_EQ(rig.drive.worstStep, 0);
 }
 
+TEST(AxisMove, FirstTargetIsTheActualPositionOfAnAxisThatIsBeingPushed) {
+    Rig rig;
+    rig.drive.drift = 7;
+    rig.powerOn();  // ends in the very cycle in which the axis reaches Standstill
+    EXPECT_EQ(rig.x.status().target, rig.x.scaling().toCounts(rig.x.status().actual));
+    const auto first = rig.x.status().target;
+    rig.cycles(10);
+    EXPECT_EQ(rig.x.status().target, first);
+}
+
 TEST(AxisMove, HoldsTheSetPointWhenTheMotorIsPushedAway) {
     Rig rig;
     rig.powerOn();

@@ -57,6 +57,20 @@ TEST(Homing, ReturnsToCyclicPositionWithoutABump) {
     EXPECT_EQ(rig.drive.position, -6250);
 }
 
+TEST(Homing, StartsTheCountAnewAfterAWrapOfTheDrivesPosition) {
+    Rig rig;
+    rig.drive.position = 2147483647 - 2000;
+    rig.powerOn();
+    rig.send(moveBy(20.0));  // 10000 counts, over the wrap
+    ASSERT_TRUE(rig.untilState(AxisState::Standstill));
+    rig.send(home(1.0));
+    ASSERT_TRUE(rig.untilState(AxisState::Standstill));
+    EXPECT_EQ(rig.x.status().actual.count(), 1.0);
+    rig.send(moveTo(-1.0));
+    ASSERT_TRUE(rig.untilState(AxisState::Standstill));
+    EXPECT_EQ(rig.x.status().target, -1000);
+}
+
 TEST(Homing, HoldsBitFourUntilTheDriveIsDone) {
     Rig rig;
     rig.drive.homingTravel = 4000;  // 100 cycles

@@ -142,6 +142,7 @@ void SimDrive::stepMotor() {
         const auto slower = std::max<std::int64_t>(0, std::abs(lastStep_) - quickStopStep);
         position += lastStep_ < 0 ? -slower : slower;
     } else {
+        position += drift;
         pendingTarget_ = position;
     }
     if (blockedAt) position = *blockedAt;

@@ -29,12 +29,13 @@ public:
     std::uint16_t faultCode{0};  ///< not 0: the drive is in fault
     bool faultResettable{true};
     std::optional<std::int64_t> blockedAt;  ///< the motor stands here whatever is asked
-    bool refuseEnable{false};               ///< never leaves Switched on
-    bool frameLost{false};                  ///< the next frames do not come back
-    int enableDelay{2};                     ///< cycles from the order to Operation enabled
-    std::int8_t fixedMode{0};               ///< not 0: 6061h shows this, whatever is asked
-    std::int64_t homingTravel{0};           ///< counts to move before the reference
-    std::int64_t homingZeroAt{0};           ///< counts left on the position when homing is done
+    std::int64_t drift{0};         ///< counts per cycle the motor is pushed while nobody holds it
+    bool refuseEnable{false};      ///< never leaves Switched on
+    bool frameLost{false};         ///< the next frames do not come back
+    int enableDelay{2};            ///< cycles from the order to Operation enabled
+    std::int8_t fixedMode{0};      ///< not 0: 6061h shows this, whatever is asked
+    std::int64_t homingTravel{0};  ///< counts to move before the reference
+    std::int64_t homingZeroAt{0};  ///< counts left on the position when homing is done
     bool homingFails{false};
     bool homingNeverEnds{false};
     bool keepsHomingBits{true};       ///< the result stays visible until the next start

@@ -266,6 +266,14 @@ TEST_F(EsiFile, BoundsAHostileArray) {
     EXPECT_NE(format(diagnostics_).find("out of range"), std::string::npos);
 }
 
+TEST_F(EsiFile, BoundsAHostileDictionary) {
+    std::string objects;
+    for (int i = 0; i < 60'000; ++i)
+        objects += "<Object><Index>1</Index><Type>DT1C12</Type></Object>";
+    EXPECT_TRUE(readWith("            </Objects>", objects + "</Objects>").empty());
+    EXPECT_NE(format(diagnostics_).find("dictionary is too large"), std::string::npos);
+}
+
 TEST_F(EsiFile, SurvivesTypesThatNameEachOther) {
     const auto devices = readWith("<Name>MYINT</Name><BaseType>INT</BaseType>",
                                   "<Name>MYINT</Name><BaseType>MYINT</BaseType>");

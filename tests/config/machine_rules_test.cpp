@@ -377,6 +377,14 @@ TEST_F(MachineRule, RefusesAStartOutsideTheHardStops) {
                 "outside the hard stops", "HardStops");
 }
 
+TEST_F(MachineRule, RefusesACrowdOfAxes) {
+    std::string crowd;
+    for (int i = 0; i < 5000; ++i) crowd += "<Axis/>";
+    const auto result = loadWith("  <Twin clock", crowd + "  <Twin clock");
+    EXPECT_FALSE(result.machine);
+    EXPECT_NE(format(result.diagnostics).find("there are 5002 <Axis>"), std::string::npos);
+}
+
 // --- all of it together
 
 TEST_F(MachineRule, TellsAllFaultsAtOnceInTheOrderOfTheirLines) {

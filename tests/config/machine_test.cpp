@@ -36,6 +36,15 @@ TEST_F(MachineFile, PlacesSlavesInFrameOrder) {
     EXPECT_NE(machine->network.slaves[0].origin.find("machine.xml:6"), std::string::npos);
 }
 
+TEST_F(MachineFile, LetsEveryAxisTolerateTheLostFramesOfTheNetwork) {
+    std::string text{BaseMachine};
+    const std::size_t at = text.find("lostFrames=\"3\"");
+    ASSERT_NE(at, std::string::npos);
+    const auto machine = loadText(text.replace(at, 14, "lostFrames=\"5\"")).machine;
+    ASSERT_TRUE(machine);
+    for (const auto& axis : machine->axes) EXPECT_EQ(axis.supervision.lostCycles, 5U);
+}
+
 TEST_F(MachineFile, TakesTheDeliveredPdosWhereNoneAreNamed) {
     const auto machine = loadText(BaseMachine).machine;
     ASSERT_TRUE(machine);

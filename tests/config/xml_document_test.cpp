@@ -149,6 +149,12 @@ TEST_F(XmlFile, RefusesADoubledAttribute) {
     expectRefused("<A>\n<B x='1'\n y='2' x='3'/></A>", 3, "is there twice");
 }
 
+TEST_F(XmlFile, RefusesACrowdOfAttributes) {
+    std::string text = "<A>\n<B";
+    for (int i = 0; i < 2'000'000; ++i) text += " a='" + std::to_string(i % 10) + "'";
+    expectRefused(text + "/></A>", 2, "too many attributes");
+}
+
 TEST_F(XmlFile, RefusesAFileAboveTheCap) {
     EXPECT_FALSE(load("<A>" + std::string(2000, ' ') + "</A>", 1024));
     EXPECT_NE(format(diagnostics_).find("too large"), std::string::npos);

@@ -108,11 +108,20 @@ TEST(Run, TellsWhyAProgramFailedAndWhatItWatches) {
 }
 
 TEST(Run, RunsAProgramThatIsLinkedIntoTheExecutable) {
+    const std::string file = changedMachine("linked", "library=\"libgantry.so\"", "");
     const auto result = runCommand({std::string{TAKT_BINARY_DIR} + "/test_programs/linked_program", "run",
-                                    Gantry, "--fast"},
+                                    file, "--fast"},
                                    TAKT_BINARY_DIR);
     EXPECT_EQ(result.exitCode, 0) << result.output;
     EXPECT_THAT(result.output, HasSubstr("'pick'"));
+}
+
+TEST(Run, RefusesAProgramThatShouldBeLinkedInAndIsNot) {
+    const std::string file = changedMachine("not_linked", "library=\"libgantry.so\"", "");
+    const auto result = runTakt({"run", file, "--fast"}, TAKT_BINARY_DIR);
+    EXPECT_EQ(result.exitCode, 1) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("machine.xml:"));
+    EXPECT_THAT(result.output, HasSubstr("program 'pick' has no library and is not linked in"));
 }
 
 TEST(Run, EndsAfterTheTimeAskedForWithoutPrograms) {

@@ -55,12 +55,13 @@ ProcessResult runCommand(const std::vector<std::string>& command, const std::str
 }
 
 ProcessResult runTakt(const std::vector<std::string>& arguments, const std::string& workDir,
-                      std::vector<std::string> extraEnvironment) {
+                      const std::vector<std::string>& extraEnvironment) {
     std::vector<std::string> command{std::string{TAKT_BINARY_DIR} + "/takt"};
     command.insert(command.end(), arguments.begin(), arguments.end());
     const std::string trap = std::string{TAKT_BINARY_DIR} + "/libtakt_trap.so";
-    if (std::filesystem::exists(trap)) extraEnvironment.push_back("LD_PRELOAD=" + trap);
-    return runCommand(command, workDir, extraEnvironment);
+    std::vector<std::string> environment = extraEnvironment;
+    if (std::filesystem::exists(trap)) environment.push_back("LD_PRELOAD=" + trap);
+    return runCommand(command, workDir, environment);
 }
 
 std::string freshFolder(const std::string& name) {

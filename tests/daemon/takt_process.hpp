@@ -14,7 +14,7 @@ struct ProcessResult {
 /// Runs `takt` of this build with the given arguments, in the folder `workDir`. Where the build has the
 /// trap library it is loaded in front, so that an allocation or a lock in the cycle ends the run.
 ProcessResult runTakt(const std::vector<std::string>& arguments, const std::string& workDir,
-                      std::vector<std::string> extraEnvironment = {});
+                      const std::vector<std::string>& extraEnvironment = {});
 
 /// Any command of this machine.
 ProcessResult runCommand(const std::vector<std::string>& command, const std::string& workDir,

@@ -145,6 +145,57 @@ TEST_F(TwoFrames, TakePositionsCountedUpByTheDevicesForGranted) {
     EXPECT_TRUE(frames.reply(first).arrived);
 }
 
+TEST(KeptFrames, AreSentAgainWithNewIndicesAndTheDataLeftInThem) {
+    ScriptedLink link;
+    FrameSet frames{3, 10};
+    frames.begin();
+    frames.openFrame();
+    const auto kept = frames.append(Command::Fpwr, 1001, 0x0F80, 4);
+    frames.keep();
+    frames.data(kept)[0] = 0x5A;
+    for (int i = 0; i < 2; ++i) {
+        frames.repeat();
+        frames.finish();
+        frames.send(link);
+    }
+    ASSERT_EQ(link.sent.size(), 2U);
+    EXPECT_EQ(link.sent[0].bytes[26], 0x5A);
+    EXPECT_EQ(static_cast<std::uint8_t>(link.sent[0].bytes[17] + 1), link.sent[1].bytes[17]);
+    link.sent[0].bytes[17] = link.sent[1].bytes[17];
+    EXPECT_EQ(link.sent[0].bytes, link.sent[1].bytes);
+}
+
+TEST(KeptFrames, ForgetWhatWasAppendedForOneExchange) {
+    ScriptedLink link;
+    FrameSet frames{2, 10};
+    frames.begin();
+    frames.openFrame();
+    const auto kept = frames.append(Command::Brd, 0, 0x0130, 2);
+    frames.keep();
+    frames.repeat();
+    frames.finish();
+    frames.send(link);
+    frames.repeat();
+    const auto extra = frames.append(Command::Fprd, 1001, 0x0000, 60);
+    frames.openFrame();
+    const auto other = frames.append(Command::Fprd, 1002, 0x0000, 10);
+    frames.finish();
+    frames.send(link);
+    link.replies = {ScriptedLink::returned(link.sent[1], 1),
+                    ScriptedLink::returned(link.sent[2], 1)};
+    frames.receive(link, {});
+    for (const auto id : {kept, extra, other}) EXPECT_TRUE(frames.reply(id).served());
+    EXPECT_EQ(frames.reply(extra).data.size(), 60U);
+    frames.repeat();
+    frames.finish();
+    frames.send(link);
+    ASSERT_EQ(link.sent.size(), 4U);
+    EXPECT_FALSE(frames.reply(kept).arrived);
+    link.sent[0].bytes[17] = link.sent[3].bytes[17] = 0;
+    EXPECT_TRUE(std::equal(link.sent[0].view().begin(), link.sent[0].view().end(),
+                           link.sent[3].view().begin(), link.sent[3].view().end()));
+}
+
 TEST(FrameSet, IsFullWhenFramesOrDatagramsRunOut) {
     FrameSet frames{2, 3};
     frames.begin();
@@ -193,11 +244,25 @@ TEST(AcyclicSlice, ServesEveryMachineInTurnWithinItsBudget) {
         frames.begin();
         frames.openFrame();
         slice.fill(frames, machines, 3 * 112, {});
-        EXPECT_EQ(slice.taken().size(), 3U);
+        EXPECT_EQ(slice.waiting(), 3U);
         frames.finish();
         slice.deliver(frames, machines, {});
     }
     for (const auto& asker : askers) EXPECT_EQ(asker.served, 3);
+}
+
+TEST(AcyclicSlice, OpensNoFrameForADatagramThatCannotBeAdded) {
+    Asker asker;
+    std::vector<AcyclicMachine*> machines{&asker};
+    AcyclicSlice slice{1};
+    slice.work().set(0);
+    FrameSet frames{2, 1};
+    frames.begin();
+    frames.openFrame();
+    frames.append(Command::Nop, 0, 0, 1);
+    slice.fill(frames, machines, 1000, {});
+    EXPECT_EQ(slice.waiting(), 0U);
+    EXPECT_EQ(frames.frameCount(), 1U);
 }
 
 TEST(AcyclicSlice, OpensOneFrameMoreWhenTheLastOneIsFull) {
@@ -210,7 +275,7 @@ TEST(AcyclicSlice, OpensOneFrameMoreWhenTheLastOneIsFull) {
     frames.openFrame();
     frames.append(Command::Nop, 0, 0, 1450);
     slice.fill(frames, machines, 1000, {});
-    EXPECT_EQ(slice.taken().size(), 1U);
+    EXPECT_EQ(slice.waiting(), 1U);
     EXPECT_EQ(frames.frameCount(), 2U);
 }
 

@@ -261,6 +261,59 @@ TEST_F(MasterCycle, LeadsAFallenDeviceUpAgainOnlyWhenAsked) {
     EXPECT_EQ(master->image(2).health->alStatusCode, 0);
 }
 
+TEST_F(MasterCycle, NeedsNoLockedClockWithoutDistributedClocks) {
+    auto params = test::exampleNetwork(2);
+    for (auto& slave : params.slaves) slave.dc.enabled = false;
+    build(params);
+    ASSERT_THAT(bringUp(), IsEmpty());
+    wake = master->firstSend(clock.now());
+    EXPECT_EQ(wake.time_since_epoch() % network.cycle, core::Duration{0});
+    master->requestOp();
+    cycle(100);
+    EXPECT_EQ(master->state(), NetworkState::Op);
+    EXPECT_FALSE(master->dcSample().valid);
+    EXPECT_EQ(segment.devices[0].memory[0x0981], 0);
+}
+
+TEST_F(MasterCycle, CarriesDevicesWithoutProcessData) {
+    auto params = test::exampleNetwork(2);
+    for (auto& slave : params.slaves) {
+        slave.inputs.clear();
+        slave.outputs.clear();
+    }
+    build(params);
+    ASSERT_THAT(bringUp(), IsEmpty());
+    EXPECT_TRUE(toOp()) << master->problem();
+    EXPECT_EQ(master->expectedWorkingCounter(), 0);
+    EXPECT_TRUE(master->image(0).inputs.empty());
+}
+
+TEST_F(MasterCycle, CountsACycleOnADeadLinkAsLost) {
+    startUp();
+    segment.down = true;
+    cycle(2);
+    EXPECT_EQ(master->image(0).health->lostInRow, 2U);
+    EXPECT_EQ(master->counters().sendFailures, 2U);
+    segment.down = false;
+    cycle();
+    EXPECT_TRUE(master->image(0).health->inputsFresh);
+}
+
+TEST_F(MasterCycle, EndsGoingDownEvenWhenADeviceDiesWhileItsClockIsAwaited) {
+    build(test::exampleNetwork(2));
+    ASSERT_THAT(bringUp(), IsEmpty());
+    wake = master->firstSend(clock.now());
+    master->requestOp();
+    cycle(20);
+    ASSERT_EQ(master->state(), NetworkState::SafeOp);
+    segment.devices[1].dead = true;
+    cycle(10);
+    EXPECT_EQ(master->state(), NetworkState::Failed);
+    master->requestInit();
+    cycle(300);
+    EXPECT_EQ(master->state(), NetworkState::Init);
+}
+
 TEST_F(MasterCycle, FindsADeviceThatIsGone) {
     startUp();
     segment.devices[1].dead = true;

@@ -103,6 +103,34 @@ TEST_F(MasterBringUp, RefusesAWatchdogThatIsOff) {
     EXPECT_EQ(segment.frameNumber, 0U) << "nothing is sent to a machine that is refused";
 }
 
+TEST_F(MasterBringUp, RefusesDevicesOutOfFrameOrder) {
+    auto params = test::exampleNetwork(2);
+    std::swap(params.slaves[0], params.slaves[1]);
+    build(params);
+    EXPECT_THAT(bringUp(), ElementsAre(HasSubstr("slave 0 'y': is configured for position 1"),
+                                       HasSubstr("slave 1 'x': is configured for position 0")));
+}
+
+TEST_F(MasterBringUp, RefusesStartUpObjectsThatAreTooLongOrEmpty) {
+    auto params = test::exampleNetwork(1);
+    params.slaves[0].startup = {{0x2010, 1, {}, true, "m.xml:3"},
+                                {0x2010, 2, std::vector<std::uint8_t>(9), true, "m.xml:4"}};
+    build(params);
+    EXPECT_THAT(bringUp(), ElementsAre(HasSubstr("2010h:01 (m.xml:3) has 0 bytes"),
+                                       HasSubstr("2010h:02 (m.xml:4) has 9 bytes")));
+}
+
+TEST_F(MasterBringUp, SendsNothingInCyclesBeforeOrAfterItFailed) {
+    build(test::exampleNetwork(1));
+    cycle(3);
+    EXPECT_EQ(segment.frameNumber, 0U);
+    segment.devices[0].eeprom[8] = 1;
+    EXPECT_FALSE(bringUp().empty());
+    const auto before = segment.frameNumber;
+    cycle(3);
+    EXPECT_EQ(segment.frameNumber, before);
+}
+
 TEST_F(MasterBringUp, RefusesAMailboxThatTheEepromPutsElsewhere) {
     build(test::exampleNetwork(1));
     segment.devices[0].eeprom[24] = 0x00801000 + 0x100;

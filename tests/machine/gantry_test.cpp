@@ -11,21 +11,22 @@ using testing::HasSubstr;
 const std::string Source = TAKT_SOURCE_DIR;
 const std::string Machine = Source + "/samples/03_gantry/machine.xml";
 
-/// One run of the sample with all outputs on, shared by the rules below.
+/// One run of the sample with all outputs on, in a folder of its own for each rule: they run side by side.
 class GantryRun : public testing::Test {
 protected:
-    static void SetUpTestSuite() {
-        folder = freshFolder("gantry");
+    void SetUp() override {
+        folder = freshFolder(std::string{"gantry_"} +
+                             testing::UnitTest::GetInstance()->current_test_info()->name());
         result = runTakt({"run", Machine, "--fast", "--trace", "a.csv", "--plot", "a.svg", "--pcap", "a.pcapng"},
                          folder);
     }
-    static ProcessResult python(const std::vector<std::string>& arguments) {
+    [[nodiscard]] ProcessResult python(const std::vector<std::string>& arguments) const {
         std::vector<std::string> command{"python3"};
         command.insert(command.end(), arguments.begin(), arguments.end());
         return runCommand(command, folder);
     }
-    static inline std::string folder;
-    static inline ProcessResult result;
+    std::string folder;
+    ProcessResult result;
 };
 
 TEST_F(GantryRun, EndsWellWithoutLosingAFrame) {
@@ -51,6 +52,31 @@ TEST_F(GantryRun, PutsNoMalformedFrameOnTheWire) {
     const auto malformed = runCommand({"tshark", "-r", "a.pcapng", "-Y", "_ws.malformed"}, folder);
     EXPECT_EQ(malformed.exitCode, 0) << malformed.output;
     EXPECT_EQ(malformed.output.find("ECAT"), std::string::npos) << malformed.output.substr(0, 2000);
+}
+
+TEST_F(GantryRun, CapturesEveryFrameTwiceAndNothingElse) {
+    const auto all = runCommand({"sh", "-c", "tshark -r a.pcapng -Y ecat -T fields -e frame.number 2>/dev/null | wc -l"},
+                                folder);
+    EXPECT_THAT(result.output, HasSubstr("capture: " + std::to_string(std::stoul(all.output)) + " frames"));
+    const auto sent = runCommand({"sh", "-c",
+                                  "tshark -r a.pcapng -Y 'ecat and frame.packet_flags_direction == 2' -T fields "
+                                  "-e frame.number 2>/dev/null | wc -l"},
+                                 folder);
+    EXPECT_GT(std::stoul(sent.output), 10000U);
+    EXPECT_EQ(std::stoul(all.output), 2 * std::stoul(sent.output));
+}
+
+TEST_F(GantryRun, IsWatchedByTheTrapInEveryCycle) {
+    if (readFile(std::string{TAKT_BINARY_DIR} + "/libtakt_trap.so").empty()) {
+        SUCCEED() << "the sanitizers of this build replace what the trap watches";
+        return;
+    }
+    // One arming a cycle, one more after each pause in the memory link and after each program call.
+    const auto watched = runTakt({"run", Machine, "--fast", "--quiet"}, folder, {"TAKT_TRAP_REPORT=trap.txt"});
+    ASSERT_EQ(watched.exitCode, 0) << watched.output;
+    const std::string report = readFile(folder + "/trap.txt");
+    EXPECT_THAT(report, HasSubstr("no hit"));
+    EXPECT_GT(std::stoul(report.substr(report.find(' ') + 1)), 16000U) << report;
 }
 
 TEST_F(GantryRun, GetsTheWorkingCountersThatTheMachineFileForetells) {

@@ -22,9 +22,9 @@ double durationOf(const Case& c) {
     return result.ok() ? result.value().duration().count() : -1.0;
 }
 
-void solvesAll(Case (*make)(Random&), std::uint64_t seed) {
+void solvesAll(Case (*make)(Random&), std::uint64_t seed, int count = 20000) {
     Random random{seed};
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < count; ++i) {
         const Case c = make(random);
         const auto result = plan(c.from, c.target, c.limits);
         ASSERT_TRUE(result.ok()) << "case " << i << ": " << describe(c);
@@ -43,6 +43,18 @@ TEST(OneAxis, SolvesIntegerProblemsWithTies) {
 }
 TEST(OneAxis, BringsAStartOutsideTheLimitsBack) {
     solvesAll(test::outside, 4);
+}
+
+TEST(OneAxis, SolvesAMillionProblems) {
+#ifdef NDEBUG
+    constexpr int count = 250000;
+#else
+    constexpr int count = 10000;  // sanitizers and debuggers are slow
+#endif
+    solvesAll(test::ordinary, 101, count);
+    solvesAll(test::wide, 102, count);
+    solvesAll(test::saturated, 103, count);
+    solvesAll(test::near, 104, count);
 }
 
 TEST(OneAxis, TakesTheTextbookTimeFromRestToRest) {

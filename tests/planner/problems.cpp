@@ -98,6 +98,46 @@ Case wide(Random& random) {
     return {within(random, l, 0), {TargetKind::State, within(random, l, way)}, l};
 }
 
+Case near(Random& random) {
+    const double m = random.logarithmic(1e-14, 1);
+    const Limits l =
+        limits(random.uniform(0.1, 2), random.uniform(0.5, 20), random.uniform(5, 500));
+    const auto little = [&] { return random.chance(0.4) ? m * random.uniform(-0.1, 0.1) : 0.0; };
+    return {state(0, little(), little()),
+            {TargetKind::State, state(m * random.uniform(-1, 1), little(), little())},
+            l};
+}
+
+namespace {
+
+State onALimit(Random& random, const Limits& l, double p) {
+    const bool up = random.chance(0.5);
+    const double a = (up ? l.maxAcceleration : l.minAcceleration).count();
+    const double v = (up ? l.maxVelocity : l.minVelocity).count();
+    const double swing = a * a / (2 * l.jerk.count());
+    switch (random.integer(0, 2)) {
+        case 0:
+            return state(p, v, 0);
+        case 1:  // the acceleration is taken back at full jerk to end on the velocity limit
+            if (std::fabs(v) > swing) return state(p, up ? v - swing : v + swing, a);
+            return state(p, v, 0);
+        default:
+            return state(p, 0, 0);
+    }
+}
+
+}  // namespace
+
+Case saturated(Random& random) {
+    const Limits l = anyLimits(random);
+    for (;;) {
+        const Case c{onALimit(random, l, 0),
+                     {TargetKind::State, onALimit(random, l, random.uniform(-5, 5))},
+                     l};
+        if (viable(c.from, l) && viable(c.target.state, l)) return c;
+    }
+}
+
 Case grid(Random& random) {
     const auto any = [&] { return static_cast<double>(random.integer(-2, 2)); };
     for (;;) {
@@ -155,6 +195,8 @@ private:
         alow_ = std::min<Real>(case_.limits.minAcceleration.count(), a_);
         vscale_ = std::max(vhigh_, -vlow_);
         ascale_ = std::max(ahigh_, -alow_);
+        least_ =
+            std::min(case_.limits.maxAcceleration.count(), -case_.limits.minAcceleration.count());
     }
 
     void expect(bool good, const char* what) {
@@ -182,6 +224,7 @@ private:
             if (zero > 0 && zero < t) within(v_ + zero * a_ / 2, 0);
         }
         way_ += std::fabs(v_) * t + std::fabs(a_) * t * t / 2;
+        fastest_ = std::max(fastest_, std::fabs(v_));
         p_ += t * (v_ + t * (a_ / 2 + t * j / 6));
         v_ += t * (a_ + t * j / 2);
         a_ += t * j;
@@ -205,9 +248,14 @@ private:
     void end() {
         const State& goal = case_.target.state;
         const Real p0 = case_.from.position.count();
-        const Real scale = way_ + std::fabs(p0) + std::fabs(goal.position.count());
+        const Real scale =
+            way_ + 1e-3L * fastest_ * t_ + std::fabs(p0) + std::fabs(goal.position.count());
         if (case_.target.kind == TargetKind::State) {
-            expect(std::fabs(p0 + p_ - goal.position.count()) <= 1e-12L * scale, "position missed");
+            // A state on the way is known to some ulps of the length the axis needs to stop.
+            const Real grain = 64 * std::numeric_limits<double>::epsilon() * vscale_ *
+                               (vscale_ / least_ + ascale_ / case_.limits.jerk.count());
+            expect(std::fabs(p0 + p_ - goal.position.count()) <= 1e-12L * scale + grain,
+                   "position missed");
             expect(profile_.end().position == goal.position, "end position not exact");
         }
         // An acceleration that is one ulp from zero changes the velocity during a long cruise.
@@ -224,8 +272,8 @@ private:
     const Case& case_;
     const Profile& profile_;
     std::string fault_;
-    Real t_{0}, p_{0}, v_{0}, a_{0}, way_{0};
-    Real vhigh_{0}, vlow_{0}, ahigh_{0}, alow_{0}, vscale_{0}, ascale_{0};
+    Real t_{0}, p_{0}, fastest_{0}, v_{0}, a_{0}, way_{0};
+    Real vhigh_{0}, vlow_{0}, ahigh_{0}, alow_{0}, vscale_{0}, ascale_{0}, least_{0};
 };
 
 }  // namespace

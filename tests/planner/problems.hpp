@@ -37,6 +37,10 @@ Target rest(double p);
 Case ordinary(Random& random);
 /// Six decades of limits, short and long moves.
 Case wide(Random& random);
+/// Targets that are all but reached.
+Case near(Random& random);
+/// States on the limits: v, a or both at their greatest.
+Case saturated(Random& random);
 /// States and limits from -2..2: ties everywhere.
 Case grid(Random& random);
 /// A start far outside the limits.

@@ -10,7 +10,7 @@ namespace {
 using core::Duration;
 using namespace std::chrono_literals;
 
-/// A controller whose clock is off by `ppm`, measured against a perfect reference.
+/// A perfect controller's clock and a reference that runs faster by `ppm`.
 struct Plant {
     double phase;  ///< ns, how late the send is on the reference's grid
     double ppm;
@@ -29,7 +29,7 @@ TEST(DcLock, FindsTheGridFromAnyPhaseAndLearnsTheDrift) {
             for (int i = 0; i < 10000; ++i) plant.cycle(lock, 1e6);
             EXPECT_TRUE(lock.locked()) << ppm << " ppm from " << start;
             EXPECT_LT(std::abs(plant.phase), 5.0) << ppm << " ppm from " << start;
-            EXPECT_NEAR(lock.driftPpm(), ppm, 1.0);
+            EXPECT_NEAR(lock.driftPpm(), -ppm, 1.0);
         }
     }
 }

@@ -15,14 +15,17 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using wire::Command;
 
-core::TrueTime at(std::int64_t ns) { return core::TrueTime{core::Duration{ns}}; }
+core::TrueTime at(std::int64_t ns) {
+    return core::TrueTime{core::Duration{ns}};
+}
 
 TEST(TwinLocalClock, RunsFastByItsPpm) {
     const LocalClock clock{50.0, 1000};
     EXPECT_EQ(clock.at(at(0)), 1000);
     EXPECT_NEAR(static_cast<double>(clock.at(at(1'000'000'000))), 1'000'051'000.0, 1.0);
     // Far from the start the product has more than 64 bits.
-    EXPECT_NEAR(static_cast<double>(clock.at(at(100'000'000'000'000))), 100'005'000'001'000.0, 100.0);
+    EXPECT_NEAR(static_cast<double>(clock.at(at(100'000'000'000'000))), 100'005'000'001'000.0,
+                100.0);
 }
 
 TEST(TwinLocalClock, FindsTheFirstInstantAtWhichItShowsATime) {
@@ -60,7 +63,8 @@ TEST(TwinDc, LatchesReceiveTimesOfTheWholeLine) {
         port0[i] = signed32(number(std::span{times}.first(4)) - start);
         port1[i] = signed32(number(std::span{times}.subspan(4, 4)) - start);
     }
-    // Out: forward 600 plus the cable before the next device; back: the same, the last turns round once.
+    // Out: forward 600 plus the cable before the next device; back: the same, the last turns round
+    // once.
     EXPECT_EQ(port0[1] - port0[0], 600 + 75);
     EXPECT_EQ(port0[2] - port0[1], 600 + 110);
     EXPECT_EQ(port1[1] - port0[1], 2 * (600 + 110));

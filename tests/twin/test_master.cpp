@@ -1,7 +1,6 @@
 #include "test_master.hpp"
 
 #include <algorithm>
-
 #include <takt/wire/byte_io.hpp>
 
 namespace takt::twin::test {
@@ -56,9 +55,8 @@ void TestMaster::addressAll() {
 }
 
 Bytes TestMaster::readSii(std::size_t device, std::uint32_t word) {
-    Bytes request = le16(0x0100);
     const Bytes address = le32(word);
-    request.insert(request.end(), address.begin(), address.end());
+    const Bytes request{0x00, 0x01, address[0], address[1], address[2], address[3]};
     write(device, 0x0502, request);
     for (int polls = 0; polls < 100; ++polls) {
         if ((number(read(device, 0x0502, 2).data) & 0x8000) == 0) break;
@@ -72,6 +70,7 @@ std::pair<std::uint16_t, std::uint16_t> TestMaster::requestState(std::size_t dev
     write(device, 0x0120, le16(control));
     const auto end = twin_.clock().now() + patience;
     Reply status;
+    sleep(milliseconds{4});  // an error of before is still shown until the device has looked
     do {
         sleep(microseconds{500});
         status = read(device, 0x0130, 6);
@@ -130,9 +129,8 @@ Bytes TestMaster::mailbox(std::size_t device, const Bytes& message) {
 
 namespace {
 Bytes sdoMessage(std::uint8_t counter, const Bytes& sdo) {
-    Bytes message = le16(static_cast<std::uint32_t>(sdo.size() + 2));
-    message.insert(message.end(),
-                   {0, 0, 0, static_cast<std::uint8_t>(0x03 | (counter << 4)), 0x00, 0x20});
+    const auto length = static_cast<std::uint8_t>(sdo.size() + 2);
+    Bytes message{length, 0, 0, 0, 0, static_cast<std::uint8_t>(0x03 | (counter << 4)), 0x00, 0x20};
     message.insert(message.end(), sdo.begin(), sdo.end());
     return message;
 }
@@ -217,6 +215,7 @@ void TestMaster::startSync0(core::Duration cycleTime, core::Duration shift) {
 
 void TestMaster::cycle() {
     if (!nextBeat_) nextBeat_ = twin_.clock().now() + beat_;
+    while (*nextBeat_ < twin_.clock().now()) *nextBeat_ += beat_;
     twin_.clock().sleepUntil(*nextBeat_);
     *nextBeat_ += beat_;
     wire::FrameWriter writer{frame_};

@@ -96,6 +96,29 @@ TEST(FrameWriter, LeavesTwelveBytesLessForEveryDatagram) {
     EXPECT_EQ(writer.room(), 1486U - 112);
 }
 
+TEST(FrameWriter, GoesOnBehindADatagramAsIfTheRestHadNeverBeen) {
+    Frame whole;
+    FrameWriter first{whole};
+    const auto kept = first.append(Command::Brd, 5, 0, reg::AlStatus, 2);
+    first.append(Command::Fprd, 5, 1001, reg::Type, 100);
+    first.finish();
+    FrameWriter{whole, kept}.finish();
+    Frame fresh;
+    FrameWriter alone{fresh};
+    alone.append(Command::Brd, 5, 0, reg::AlStatus, 2);
+    alone.finish();
+    EXPECT_EQ(bytesOf(whole), bytesOf(fresh));
+
+    FrameWriter again{whole, kept};
+    again.append(Command::Fpwr, 5, 1002, reg::AlControl, 2);
+    again.finish();
+    FrameWriter both{fresh};
+    both.append(Command::Brd, 5, 0, reg::AlStatus, 2);
+    both.append(Command::Fpwr, 5, 1002, reg::AlControl, 2);
+    both.finish();
+    EXPECT_EQ(bytesOf(whole), bytesOf(fresh));
+}
+
 TEST(DatagramCursor, ReadsGoldenBytes) {
     Frame frame = goldenFrame();
     DatagramCursor cursor{frame.view()};

@@ -10,8 +10,11 @@
 #include <CLI/CLI.hpp>
 
 #include <takt/daemon/run.hpp>
+#include <takt/daemon/sim.hpp>
 #include <takt/program/entry.hpp>
 
+#include "bus_verbs.hpp"
+#include "new_project.hpp"
 #include "remote.hpp"
 
 namespace takt::cli {
@@ -19,7 +22,7 @@ namespace takt::cli {
 namespace {
 
 /// "10s", "500 ms": a length of time with its unit.
-core::Duration parseLength(const std::string& text) {
+core::Duration parseLength(const char* option, const std::string& text) {
     static const std::map<std::string, double> units{{"ms", 1e6}, {"s", 1e9}, {"min", 60e9}, {"h", 3600e9}};
     std::size_t end = 0;
     double value = 0;
@@ -31,7 +34,7 @@ core::Duration parseLength(const std::string& text) {
     const std::size_t unitAt = text.find_first_not_of(' ', end);
     const auto unit = unitAt == std::string::npos ? units.end() : units.find(text.substr(unitAt));
     if (end == 0 || unit == units.end() || !(value > 0) || value * unit->second > 9e18) {
-        throw CLI::ValidationError("--for", "'" + text + "' is not a length of time; use for example 10s, 500ms, 5min");
+        throw CLI::ValidationError(option, "'" + text + "' is not a length of time; use for example 10s, 500ms, 5min");
     }
     return core::Duration{static_cast<std::int64_t>(value * unit->second)};
 }
@@ -46,6 +49,7 @@ std::filesystem::path executableFolder() {
 struct RunArguments {
     daemon::RunOptions options;
     std::string length;
+    std::string watchdog;
     bool sim{false};
 };
 
@@ -53,14 +57,19 @@ void addRun(CLI::App& app, RunArguments& run) {
     auto* command = app.add_subcommand("run", "run a machine until its programs have finished");
     auto& options = run.options;
     command->add_option("machine", options.machine, "machine.xml")->required();
-    command->add_flag("--sim", run.sim, "on the simulated machine (the only one without an interface)");
-    command->add_flag("--fast", options.fast, "simulated, as fast as the computer can; implies --sim");
+    auto* sim = command->add_flag("--sim", run.sim, "on the simulated machine; so it is without --interface");
+    auto* fast = command->add_flag("--fast", options.fast, "simulated, as fast as the computer can; implies --sim");
+    command->add_option("--interface", options.interface, "on the network at this interface, in real time")
+        ->excludes(sim)
+        ->excludes(fast);
     command->add_option("--program", options.programLibrary, "run this program library instead of those in the machine file");
     command->add_flag("--manual", options.manual, "run without programs");
     command->add_option("--for", run.length, "stop after this time in operation, e.g. 10s");
     command->add_option("--trace", options.trace, "write every cycle to this CSV file");
     command->add_option("--plot", options.plot, "draw the run into this SVG file");
     command->add_option("--pcap", options.capture, "write every frame to this pcapng file");
+    command->add_option("--program-watchdog", run.watchdog,
+                        "simulated: end the run when a program does not come back for so long (10s)");
     command->add_option("--socket", options.socket, "path of the control socket");
     command->add_option("--commands", options.commands, "replay the operator's commands of this file, cycle by cycle");
     command->add_option("--record-commands", options.recordCommands, "write the operator's commands to this file");
@@ -70,6 +79,70 @@ void addRun(CLI::App& app, RunArguments& run) {
 void addCheck(CLI::App& app, daemon::RunOptions& options) {
     auto* command = app.add_subcommand("check", "check a machine file and say what its network needs");
     command->add_option("machine", options.machine, "machine.xml")->required();
+}
+
+void addNew(CLI::App& app, NewProjectOptions& options) {
+    auto* command = app.add_subcommand("new", "write a machine of your own: machine file, program, build, test, CI");
+    command->add_option("folder", options.folder, "a folder that is not there yet, or empty")->required();
+    command->add_option("--esi", options.esi, "device files; without: one CD300E drive");
+    command->add_option("--device", options.devices, "types wanted from the device files, in frame order");
+    command->add_option("--eni", options.eni, "network file");
+    command->add_option("--scan", options.interface, "take the devices that are on this network interface");
+    command->add_flag("--json", options.json, "tell the result as JSON");
+}
+
+void addSim(CLI::App& app, daemon::SimOptions& options) {
+    auto* command = app.add_subcommand("sim", "serve the simulated machine on a network interface");
+    command->add_option("machine", options.machine, "machine.xml")->required();
+    command->add_option("--interface", options.interface, "network interface, for example one end of a veth pair")
+        ->required();
+    command->add_flag("--quiet", options.quiet, "print errors only");
+}
+
+/// What the bus tools were asked for; one struct for all, each verb takes its part.
+struct BusArguments {
+    BusOptions bus;
+    StatesOptions states;
+    ObjectOptions object;
+};
+
+CLI::App* addBusVerb(CLI::App& app, const char* name, const char* text, BusOptions& bus) {
+    auto* command = app.add_subcommand(name, text);
+    auto* interface = command->add_option("--interface", bus.interface, "network interface");
+    command->add_option("--sim", bus.machine, "the simulated network of this machine file")->excludes(interface);
+    command->add_option("--esi", bus.esi, "more device files to know devices by");
+    command->add_flag("--json", bus.json, "as JSON");
+    return command;
+}
+
+void addBusVerbs(CLI::App& app, BusArguments& arguments) {
+    BusOptions& bus = arguments.bus;
+    addBusVerb(app, "scan", "who is on a network, and which device file describes it", bus);
+    addBusVerb(app, "slaves", "one line for each device, with its state", bus);
+    auto* states = addBusVerb(app, "states", "states of the devices, or lead them to one", bus);
+    states->add_option("state", arguments.states.state, "INIT, PREOP, SAFEOP or OP");
+    states->add_option("--slave", arguments.states.slave, "this device only: position or name");
+    ObjectOptions& object = arguments.object;
+    auto* upload = addBusVerb(app, "upload", "read an object of a device", bus);
+    auto* download = addBusVerb(app, "download", "write an object of a device", bus);
+    for (auto* command : {upload, download}) {
+        command->add_option("slave", object.slave, "position or name")->required();
+        command->add_option("object", object.object, "INDEX or INDEX:SUB, e.g. 0x1018:1")->required();
+        command->add_option("--type", object.type, "uint16, int32, float …; without: as the device file says");
+    }
+    download->add_option("value", object.value, "decimal, or hexadecimal with 0x")->required();
+}
+
+/// \return empty: another verb was given
+std::optional<int> runBusVerb(const CLI::App& app, BusArguments& arguments) {
+    arguments.bus.executableFolder = executableFolder();
+    arguments.states.bus = arguments.object.bus = arguments.bus;
+    if (app.got_subcommand("scan")) return scan(arguments.bus);
+    if (app.got_subcommand("slaves")) return slaves(arguments.bus);
+    if (app.got_subcommand("states")) return states(arguments.states);
+    if (app.got_subcommand("upload")) return upload(arguments.object);
+    if (app.got_subcommand("download")) return download(arguments.object);
+    return std::nullopt;
 }
 
 /// What is asked of a running machine.
@@ -152,21 +225,39 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
     daemon::RunOptions checkOptions;
     addRun(app, runArguments);
     addCheck(app, checkOptions);
+    NewProjectOptions newOptions;
+    addNew(app, newOptions);
+    BusArguments busArguments;
+    addBusVerbs(app, busArguments);
+    daemon::SimOptions simOptions;
+    addSim(app, simOptions);
     RemoteArguments remote;
     addTables(app, remote);
     addOrders(app, remote);
     try {
         app.parse(argc, argv);
-        if (!runArguments.length.empty()) runArguments.options.length = parseLength(runArguments.length);
+        if (!runArguments.length.empty()) runArguments.options.length = parseLength("--for", runArguments.length);
+        if (!runArguments.watchdog.empty()) {
+            runArguments.options.programWatchdog = parseLength("--program-watchdog", runArguments.watchdog);
+        }
     } catch (const CLI::ParseError& error) {
         // CLI11 has codes of its own; a wrong command line is a refused configuration.
         return app.exit(error) == 0 ? 0 : static_cast<int>(daemon::ExitCode::Refused);
     }
 
+    if (app.got_subcommand("new")) {
+        newOptions.executableFolder = executableFolder();
+        return newProject(newOptions);
+    }
+    if (const auto code = runBusVerb(app, busArguments)) return *code;
     if (const auto code = runRemote(app, remote)) return *code;
     if (app.got_subcommand("check")) {
         checkOptions.searchDirs.push_back(executableFolder());
         return daemon::check(checkOptions);
+    }
+    if (app.got_subcommand("sim")) {
+        simOptions.searchDirs.push_back(executableFolder());
+        return daemon::sim(simOptions);
     }
     runArguments.options.searchDirs.push_back(executableFolder());
     return daemon::run(runArguments.options, std::move(programs));

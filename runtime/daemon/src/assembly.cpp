@@ -36,10 +36,16 @@ std::vector<ProgramHost> loadPrograms(const config::MachineConfig& machine,
     std::uint16_t number = 1;
     for (const program::ProgramParams& params : machine.programs) {
         program::ProgramPtr program = takeLinked(linked, params.name);
+        if (!program && params.library.empty()) {
+            problems.push_back(fmt::format("{}: error: program '{}' has no library and is not linked in; do: add "
+                                           "library=\"…\", or run the executable that brings it",
+                                           params.origin, params.name));
+            continue;
+        }
         if (!program) {
             program::LoadedProgram loaded = program::loadProgram(params.library);
             if (!loaded.program) {
-                problems.push_back(fmt::format("{}: {}", params.origin, loaded.error));
+                problems.push_back(fmt::format("{}: error: {}", params.origin, loaded.error));
                 continue;
             }
             program = std::move(loaded.program);
@@ -79,18 +85,6 @@ axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave) {
             .digitalInputs = input(DigitalInputs),
             .followingError = input(FollowingErrorActual),
             .actualTorque = input(TorqueActual)};
-}
-
-SimulatedBus::SimulatedBus(const config::MachineConfig& machine, record::PcapngWriter* capture) {
-    std::vector<std::shared_ptr<const wire::DeviceDescription>> devices;
-    for (const fieldbus::SlaveParams& slave : machine.network.slaves) devices.push_back(slave.device);
-    twin_ = std::make_unique<twin::Twin>(machine.twin, std::move(devices), machine.network.cycle);
-    wire::Link* link = &twin_->link();
-    if (capture != nullptr) {
-        tapped_ = std::make_unique<TappedLink>(*link, *capture);
-        link = tapped_.get();
-    }
-    master_ = std::make_unique<fieldbus::ethercat::Master>(machine.network, *link, twin_->clock());
 }
 
 void attachAxes(const config::MachineConfig& machine, fieldbus::ethercat::Master& master,

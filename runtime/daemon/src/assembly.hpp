@@ -7,12 +7,9 @@
 #include <takt/config/machine_config.hpp>
 #include <takt/daemon/run_options.hpp>
 #include <takt/fieldbus/ethercat/master.hpp>
-#include <takt/twin/twin.hpp>
 
 #include "axes.hpp"
 #include "program_host.hpp"
-#include "recorders.hpp"
-#include "tapped_link.hpp"
 
 namespace takt::daemon {
 
@@ -27,22 +24,6 @@ void makeAxes(const config::MachineConfig& machine, Axes& axes);
 
 /// Where each drive's objects lie in its device's process data.
 axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave);
-
-/// The simulated network of a machine and the master that runs on it.
-class SimulatedBus {
-public:
-    /// \param capture null: no frames are kept
-    SimulatedBus(const config::MachineConfig& machine, record::PcapngWriter* capture);
-
-    [[nodiscard]] twin::Twin& twin() noexcept { return *twin_; }
-    [[nodiscard]] fieldbus::ethercat::Master& master() noexcept { return *master_; }
-    [[nodiscard]] core::ClockSource& clock() noexcept { return twin_->clock(); }
-
-private:
-    std::unique_ptr<twin::Twin> twin_;
-    std::unique_ptr<TappedLink> tapped_;
-    std::unique_ptr<fieldbus::ethercat::Master> master_;
-};
 
 /// Binds each axis to the process data and objects of its drive.
 void attachAxes(const config::MachineConfig& machine, fieldbus::ethercat::Master& master,

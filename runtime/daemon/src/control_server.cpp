@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "command_file.hpp"
+#include "realtime_thread.hpp"
 
 namespace takt::daemon {
 
@@ -64,6 +65,7 @@ bool ControlServer::finish() {
 }
 
 void ControlServer::serve() {
+    dropCapabilities();
     blockSignals();
     while (!ending_) {
         waitForClients();

@@ -114,6 +114,7 @@ const char* name(ProgramPhase phase, bool held) noexcept {
         case ProgramPhase::Finished: return "finished";
         case ProgramPhase::Failed: return "failed";
         case ProgramPhase::Threw: return "threw";
+        case ProgramPhase::Abandoned: return "abandoned";
     }
     return "?";
 }

@@ -30,6 +30,11 @@ void choosePrograms(const RunOptions& options, config::MachineConfig& machine) {
     machine.programs.push_back(std::move(params));
 }
 
+config::ProgramLibraries librariesOf(const RunOptions& options) noexcept {
+    const bool own = !options.manual && options.programLibrary.empty();
+    return own ? config::ProgramLibraries::Needed : config::ProgramLibraries::NotNeeded;
+}
+
 void checkLoad(const config::MachineConfig& machine, std::vector<std::string>& problems) {
     const fieldbus::BusTiming timing = fieldbus::computeTiming(machine.network);
     if (timing.load <= MaxLoad) return;
@@ -43,7 +48,7 @@ void checkLoad(const config::MachineConfig& machine, std::vector<std::string>& p
 
 std::optional<LoadedMachine> loadMachine(const RunOptions& options, std::vector<LinkedProgram> linked,
                                          Console& console) {
-    config::LoadResult result = config::loadMachine(options.machine, options.searchDirs);
+    config::LoadResult result = config::loadMachine(options.machine, options.searchDirs, librariesOf(options));
     for (const config::Diagnostic& diagnostic : result.diagnostics.items()) {
         console.error(config::format(diagnostic));
     }

@@ -61,7 +61,9 @@ MachineControl::MachineControl(const Parts& parts, std::vector<TakenCommand> rep
 
 void MachineControl::beforePrograms(core::CycleNumber cycle, const CycleOrders& orders) noexcept {
     if (orders.operating) stop_.watchInputs(cycle);
-    for (ProgramHost& program : parts_.programs) program.machine().setStopped(stop_.active());
+    for (ProgramHost& program : parts_.programs) {
+        if (program.atRest()) program.machine().setStopped(stop_.active());
+    }
 }
 
 void MachineControl::afterPrograms(core::CycleNumber cycle, const CycleOrders& orders) noexcept {
@@ -75,6 +77,7 @@ void MachineControl::afterPrograms(core::CycleNumber cycle, const CycleOrders& o
 
 void MachineControl::takeWishes(core::CycleNumber cycle) noexcept {
     for (std::size_t i = 0; i < parts_.programs.size(); ++i) {
+        if (!parts_.programs[i].atRest()) continue;
         const auto wishes = parts_.programs[i].machine().takeStopWishes();
         if (wishes.reset && stop_.active()) stop_.reset(parts_.axes);
         if (wishes.stop) stop_.request(StopCause::Program, static_cast<std::uint16_t>(i), cycle);
@@ -113,7 +116,7 @@ void MachineControl::publishStatus(core::CycleNumber cycle, const CycleOrders& o
         const ProgramHost& program = parts_.programs[i];
         ProgramEntry entry{program.phase(), program.held(), program.endCycle(), {}};
         const auto& watched = program.watched();
-        const std::size_t count = std::min(watched.size(), entry.watches.size());
+        const std::size_t count = program.atRest() ? std::min(watched.size(), entry.watches.size()) : 0;
         for (std::size_t w = 0; w < count; ++w) entry.watches[w] = watched[w].number();
         board_.programs[i].write(entry);
     }

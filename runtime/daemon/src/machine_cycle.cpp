@@ -9,6 +9,7 @@ namespace takt::daemon {
 void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) noexcept {
     const core::CycleGuard guard;
     parts_.master.exchange(beat.number);
+    const core::HostTime replied = parts_.clock.now();
     followReferenceClock(beat);
     for (axis::Axis& axis : parts_.axes) axis.readInputs(beat.number);
     parts_.control.beforePrograms(beat.number, orders);
@@ -16,12 +17,13 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
         for (ProgramHost& program : parts_.programs) program.cycle(beat.number, parts_.axes);
     }
     parts_.control.afterPrograms(beat.number, orders);
+    const core::HostTime computed = parts_.clock.now();
     for (axis::Axis& axis : parts_.axes) axis.step();
     for (axis::Axis& axis : parts_.axes) axis.writeOutputs();
     parts_.master.prepare();
     parts_.recorders.row(beat.number, parts_.axes);
     parts_.control.publish(beat.number, orders);
-    ++cycles_;
+    keepBooks(beat, replied, computed);
 }
 
 void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {
@@ -30,13 +32,32 @@ void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {
         parts_.grid.shift(parts_.dcLock.coast());
         return;
     }
-    // How late this wake-up came is known and no fault of the clocks.
-    const core::Duration error = sample.phaseError - beat.lateness();
+    // How late the frame left is known and no fault of the clocks. The difference of two phases is one.
+    const core::Duration half = parts_.length / 2;
+    core::Duration error = (sample.phaseError - (sample.sent - beat.planned)) % parts_.length;
+    if (error > half) error -= parts_.length;
+    if (error <= -half) error += parts_.length;
     parts_.grid.shift(parts_.dcLock.update(error));
     parts_.master.setClockLocked(parts_.dcLock.locked());
     if (parts_.dcLock.locked()) {
         worstPhaseError_ = std::max(worstPhaseError_, std::chrono::abs(error));
     }
+}
+
+void MachineCycle::keepBooks(const scheduler::Beat& beat, core::HostTime replied,
+                             core::HostTime computed) noexcept {
+    const core::HostTime done = parts_.clock.now();
+    statistics_.lateness.add(beat.lateness().count());
+    statistics_.reply.add((replied - beat.woke).count());
+    statistics_.execution.add((done - beat.woke).count());
+    if (beat.skipped > 0) ++statistics_.missedBy[static_cast<std::size_t>(longest_)];
+    longest_ = CyclePart::Host;
+    if (done - beat.woke <= parts_.length) return;
+    const core::Duration bus = replied - beat.woke;
+    const core::Duration programs = computed - replied;
+    const core::Duration axes = done - computed;
+    longest_ = programs > bus ? CyclePart::Programs : CyclePart::Bus;
+    if (axes > std::max(bus, programs)) longest_ = CyclePart::Motion;
 }
 
 }  // namespace takt::daemon

@@ -2,13 +2,14 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include <takt/core/clock_source.hpp>
 #include <takt/fieldbus/ethercat/master.hpp>
 #include <takt/scheduler/dc_lock.hpp>
 #include <takt/scheduler/grid.hpp>
 
 #include "axes.hpp"
+#include "cycle_statistics.hpp"
 #include "machine_control.hpp"
 #include "program_host.hpp"
 #include "recorders.hpp"
@@ -26,21 +27,25 @@ public:
         scheduler::DcLock& dcLock;
         Recorders& recorders;
         MachineControl& control;
+        core::ClockSource& clock;
+        core::Duration length;  ///< of a cycle
     };
     explicit MachineCycle(const Parts& parts) noexcept : parts_{parts} {}
 
     /// rt. The whole cycle of one wake-up.
     void run(const scheduler::Beat& beat, const CycleOrders& orders) noexcept;
 
-    [[nodiscard]] std::uint64_t cycles() const noexcept { return cycles_; }
     [[nodiscard]] core::Duration worstPhaseError() const noexcept { return worstPhaseError_; }
+    [[nodiscard]] const CycleStatistics& statistics() const noexcept { return statistics_; }
 
 private:
     void followReferenceClock(const scheduler::Beat& beat) noexcept;
+    void keepBooks(const scheduler::Beat& beat, core::HostTime replied, core::HostTime computed) noexcept;
 
     Parts parts_;
-    std::uint64_t cycles_{0};
-    core::Duration worstPhaseError_{0};  ///< while locked
+    CycleStatistics statistics_;
+    CyclePart longest_{CyclePart::Host};  ///< what made the last cycle too long; Host: it was not
+    core::Duration worstPhaseError_{0};   ///< while locked
 };
 
 }  // namespace takt::daemon

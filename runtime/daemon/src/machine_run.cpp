@@ -1,25 +1,54 @@
 #include "machine_run.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <takt/axis/error.hpp>
+#include "run_limits.hpp"
 
 namespace takt::daemon {
 
 namespace {
 
 using namespace std::chrono_literals;
-using fieldbus::ethercat::NetworkState;
 
-constexpr core::Duration OpTimeout = 30s;
-constexpr core::Duration StopTimeout = 10s;
-constexpr core::Duration QuickStopTime = 1s;  ///< for the drives, after StopTimeout
-constexpr core::Duration InitTimeout = 10s;
+constexpr std::size_t NoticeRoom = 256;
+constexpr auto HouseInterval = 20ms;
 
 double seconds(core::Duration duration) { return std::chrono::duration<double>{duration}.count(); }
+
+std::unique_ptr<BusEnd> endFor(const RunOptions& options, const config::MachineConfig& machine) {
+    return options.interface.empty() ? simulatedEnd(machine) : interfaceEnd(machine, options.interface);
+}
+
+/// A real computer sends a little later or earlier each time; a lock that waits for the precision of a
+/// simulated one would never be found. SYNC0 comes a quarter of the cycle after the frame, at least.
+scheduler::DcLockParams lockFor(const RunOptions& options, const config::MachineConfig& machine) {
+    scheduler::DcLockParams params = machine.scheduler.dcLock;
+    if (options.interface.empty()) return params;
+    constexpr int windowPart = 100;
+    constexpr std::uint32_t fewest = 25;
+    params.window = std::max(params.window, machine.network.cycle / windowPart);
+    const auto inTenth = static_cast<std::uint32_t>(100ms / machine.network.cycle);
+    params.windowCycles = std::clamp(inTenth, fewest, params.windowCycles);
+    return params;
+}
+
+/// The share of the cycle that each program gets: half of it for all together, unless one was given more.
+double budgetScale(const std::vector<ProgramHost>& programs) {
+    constexpr double half = 0.5;
+    double sum = 0;
+    double largest = half;
+    for (const ProgramHost& program : programs) {
+        sum += program.params().budgetShare;
+        largest = std::max(largest, program.params().budgetShare);
+    }
+    return sum > largest ? largest / sum : 1.0;
+}
 
 }  // namespace
 
@@ -31,32 +60,27 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       console_{console},
       axes_{machine.axes},
       programs_{machine.programs},
-      reported_(programs_.size(), false),
-      bus_{machine_, recorders.capture()},
-      dcLock_{machine_.scheduler.dcLock, machine_.network.cycle},
+      noted_(programs_.size(), false),
+      bus_{machine_, endFor(options, machine_), recorders.capture()},
+      dcLock_{lockFor(options, machine_), machine_.network.cycle},
       grid_{core::HostTime{}, machine_.network.cycle},
+      overruns_{machine_.scheduler.overruns},
       control_{{machine_, bus_.master(), axes_, programs_}, machine.commands, !options.recordCommands.empty()},
       server_{{machine_, programs_, control_}, options.socket, options.recordCommands},
-      cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, control_}},
-      pace_{!options.fast} {
+      cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, control_, bus_.clock(),
+              machine_.network.cycle}},
+      pace_{!options.fast && options.interface.empty()},
+      notices_{NoticeRoom},
+      reporter_{machine_, programs_, bus_.master(), control_.names(), console} {
     attachAxes(machine_, bus_.master(), axes_);
 }
 
 int MachineRun::execute() {
     if (!bringUp()) return exitCode();
-    const core::HostTime began = bus_.clock().now();
-    grid_ = scheduler::Grid{bus_.master().firstSend(began + machine_.network.cycle), machine_.network.cycle};
-    bus_.master().prepare();
-    bus_.master().requestOp();
-    enter(Phase::GoingOp);
-    while (phase_ != Phase::Over) {
-        const scheduler::Beat beat = grid_.wait(bus_.clock());
-        cycle_.run(beat, orders_);
-        now_ = beat.number + 1;
-        recorders_.drain();
-        supervise();
-        showProgress();
-        pace_.wait(bus_.clock().now() - began);
+    if (onMachine()) {
+        runOnThreads();
+    } else {
+        runInline();
     }
     for (ProgramHost& program : programs_) program.stop();
     conclude();
@@ -64,9 +88,10 @@ int MachineRun::execute() {
 }
 
 bool MachineRun::bringUp() {
-    console_.line(fmt::format("{}: {} devices, {} axes, cycle {} us", machine_.name,
+    console_.line(fmt::format("{}: {} devices, {} axes, cycle {} us{}{}", machine_.name,
                               machine_.network.slaves.size(), axes_.size(),
-                              machine_.network.cycle.count() / 1000));
+                              machine_.network.cycle.count() / 1000, onMachine() ? ", interface " : "",
+                              options_.interface));
     if (options_.socket.empty() && server_.path().filename() != machine_.name + ".sock") {
         console_.line(fmt::format("control socket {}, since another takt runs a machine of this name",
                                   server_.path().string()));
@@ -83,174 +108,118 @@ bool MachineRun::bringUp() {
     return problems.empty();
 }
 
-void MachineRun::supervise() {
-    switch (phase_) {
-        case Phase::BringUp: return;
-        case Phase::GoingOp: return superviseGoingOp();
-        case Phase::Operating: return superviseOperating();
-        case Phase::PoweringOff: return supervisePoweringOff();
-        case Phase::LeavingOp: return superviseLeavingOp();
-        case Phase::Over: return;
-    }
+/// Directly before the first cycle.
+void MachineRun::begin() {
+    const core::HostTime soon = bus_.clock().now() + machine_.network.cycle;
+    grid_ = scheduler::Grid{bus_.master().firstSend(soon), machine_.network.cycle};
+    bus_.master().prepare();
+    bus_.master().requestOp();
+    enter(Phase::GoingOp);
 }
 
-void MachineRun::superviseGoingOp() {
-    if (bus_.master().state() == NetworkState::Op) {
-        console_.line(fmt::format("network in OP after {:.3f} s; DC locked, host clock {:+.1f} ppm",
-                                  seconds(inPhase()), dcLock_.driftPpm()));
-        orders_.runPrograms = !options_.manual;
-        orders_.operating = true;
-        return enter(Phase::Operating);
-    }
-    if (bus_.master().state() == NetworkState::Failed) {
-        fail(ExitCode::CouldNotRun, std::string{bus_.master().problem()});
-    } else if (inPhase() > OpTimeout) {
-        fail(ExitCode::CouldNotRun, fmt::format("the network did not reach OP within {} s: {}",
-                                                OpTimeout / 1s, bus_.master().problem()));
-    } else if (stop_.count() == 0) {
-        return;
-    }
-    bus_.master().requestInit();
-    enter(Phase::LeavingOp);
-}
-
-void MachineRun::superviseOperating() {
-    reportEndedPrograms();
-    reportMachineStop();
-    const bool allEnded = std::all_of(programs_.begin(), programs_.end(),
-                                      [](const ProgramHost& program) { return program.ended(); });
-    const bool timeOver = options_.length && inPhase() >= *options_.length;
-    if (!(allEnded && !options_.manual) && !timeOver && stop_.count() == 0) return;
-    orders_.runPrograms = false;
-    orders_.operating = false;
-    orders_.stopAxes = true;
-    enter(Phase::PoweringOff);
-}
-
-void MachineRun::supervisePoweringOff() {
-    if (stop_.count() > 1) quickStopAll();
-    const bool allOff = std::all_of(axes_.begin(), axes_.end(),
-                                    [](const axis::Axis& axis) { return axis.isDisabled(); });
-    if (!allOff && inPhase() < StopTimeout) return;
-    if (!allOff && !stopTimedOut_) {
-        stopTimedOut_ = true;
-        for (const axis::Axis& axis : axes_) {
-            if (axis.isDisabled()) continue;
-            fail(ExitCode::StopTimeout,
-                 fmt::format("axis {} did not stop and power off within {} s; its drive stops it now", axis.name(),
-                             StopTimeout / 1s));
-        }
-        quickStopAll();
-    }
-    // No drive is left alone in motion as long as it may still stop by itself.
-    if (!allOff && inPhase() < StopTimeout + QuickStopTime) return;
-    bus_.master().requestInit();
-    enter(Phase::LeavingOp);
-}
-
-void MachineRun::quickStopAll() {
-    if (quickStopped_) return;
-    quickStopped_ = true;
-    for (axis::Axis& axis : axes_) {
-        if (!axis.isDisabled()) axis.quickStop();
-    }
-}
-
-void MachineRun::superviseLeavingOp() {
-    const NetworkState state = bus_.master().state();
-    if (state == NetworkState::Init || state == NetworkState::Failed) return enter(Phase::Over);
-    if (inPhase() < InitTimeout) return;
-    fail(ExitCode::StopTimeout, fmt::format("the network did not go to INIT within {} s", InitTimeout / 1s));
-    enter(Phase::Over);
-}
-
-void MachineRun::enter(Phase phase) {
-    phase_ = phase;
-    orders_.phase = phase;
-    phaseBegan_ = now_;
-}
-
-void MachineRun::fail(ExitCode code, const std::string& why) {
-    console_.error(why);
-    if (code_ == ExitCode::Good) code_ = code;
-}
-
-void MachineRun::reportEndedPrograms() {
+void MachineRun::runInline() {
+    ProgramWatchdog watchdog{options_.programWatchdog, [this](std::size_t program, core::CycleNumber cycle) {
+                                 leaveHangingProgram(program, cycle);
+                             }};
     for (std::size_t i = 0; i < programs_.size(); ++i) {
-        const ProgramHost& program = programs_[i];
-        if (!program.ended() || reported_[i]) continue;
-        reported_[i] = true;
-        const std::string seen = program.watches();
-        const std::string where = fmt::format("program '{}' in cycle {}{}{}", program.name(), program.endCycle(),
-                                              seen.empty() ? "" : ": ", seen);
-        switch (program.phase()) {
-            case ProgramPhase::Waiting:
-            case ProgramPhase::Running: break;
-            case ProgramPhase::Finished: console_.line(fmt::format("{}: finished", where)); break;
-            case ProgramPhase::Failed:
-                fail(ExitCode::MachineFault, fmt::format("{}: failed: {}", where, program.failure()));
-                break;
-            case ProgramPhase::Threw:
-                fail(ExitCode::MachineFault,
-                     fmt::format("{}: threw an exception: {}; its axes stop on their path", where, program.failure()));
-                break;
-        }
+        programs_[i].useCaller(std::make_unique<InlineCaller>(watchdog, i));
+    }
+    const core::HostTime began = bus_.clock().now();
+    begin();
+    while (phase_ != Phase::Over) {
+        oneCycle();
+        keepHouse(true);
+        pace_.wait(bus_.clock().now() - began);
     }
 }
 
-void MachineRun::reportMachineStop() {
-    const MachineStop& stop = control_.machineStop();
-    const bool changed = stop.active() != stopReported_;
-    stopReported_ = stop.active();
-    if (!changed) return;
-    if (!stop.active()) return console_.line(fmt::format("machine stop reset before cycle {}", now_));
-    const ControlNames& names = control_.names();
-    const StopRecord& record = stop.record();
-    std::string why = describe(record, names.stopInputs, names.programs, names.axes);
-    if (record.cause == StopCause::Program) {
-        why += fmt::format(": {}", programs_[record.source].machine().stopReason());
-    }
-    console_.error(fmt::format("machine stop in cycle {} by {}; axes stop and are switched off", record.cycle, why));
+void MachineRun::leaveHangingProgram(std::size_t program, core::CycleNumber cycle) {
+    console_.error(fmt::format("program '{}' did not come back from its call in cycle {} within {:g} s and was abandoned",
+                               programs_[program].name(), cycle, seconds(options_.programWatchdog)));
+    // The cycle's thread is inside the program: the records are nobody else's now.
+    for (const std::string& problem : recorders_.finish(machine_.name, summary())) console_.error(problem);
+    std::fflush(nullptr);
+    std::_Exit(static_cast<int>(ExitCode::ProgramAbandoned));
 }
 
-void MachineRun::showProgress() {
-    const auto perSecond = static_cast<core::CycleNumber>(1s / machine_.network.cycle);
-    if (perSecond == 0 || now_ % perSecond != 0) return;
-    std::string text = fmt::format("{:7.1f} s", static_cast<double>(now_) * seconds(machine_.network.cycle));
-    for (std::size_t i = 0; i < axes_.size(); ++i) {
-        const axis::AxisStatus status = axes_[i].status();
-        text += fmt::format("   {} {:9.3f} {} {}", axes_[i].name(), status.actual.count(),
-                            machine_.axes[i].unit, axis::name(status.state));
+void MachineRun::runOnThreads() {
+    const scheduler::SchedulerParams& params = machine_.scheduler;
+    const bool lenient = params.overruns.policy == scheduler::OverrunPolicy::Count;
+    const double scale = budgetScale(programs_);
+    Notes notes;
+    for (ProgramHost& program : programs_) {
+        const double share = program.params().budgetShare * scale;
+        const auto budget = static_cast<std::int64_t>(share * static_cast<double>(machine_.network.cycle.count()));
+        program.useCaller(std::make_unique<ThreadCaller>(
+            ThreadPlace{"takt-" + program.name(), std::max(params.priority - 1, 0), params.cpu},
+            CallBudget{core::Duration{budget}, lenient}, bus_.clock(), notes));
     }
-    console_.progress(text);
+    std::atomic<bool> go{false};
+    RealtimeThread thread{{"takt-cycle", params.priority, params.cpu},
+                          [this, &go] {
+                              go.wait(false);
+                              begin();
+                              while (phase_ != Phase::Over) oneCycle();
+                              over_.store(true, std::memory_order_release);
+                          },
+                          notes};
+    lockMemory(notes);
+    dropCapabilities();
+    for (const std::string& line : notes.lines()) console_.line(line);
+    go.store(true);
+    go.notify_one();
+    while (!over_.load(std::memory_order_acquire)) {
+        keepHouse(false);
+        std::this_thread::sleep_for(HouseInterval);
+    }
+    thread.join();
+    keepHouse(true);
+}
+
+/// Files, messages, progress. The words for the state of the network are found when no cycle changes it.
+void MachineRun::keepHouse(bool cycleRests) {
+    RunNotice notice;
+    while (notices_.pop(notice)) heldBack_.push_back(notice);
+    std::erase_if(heldBack_, [this, cycleRests](const RunNotice& held) {
+        const bool ofNetwork = held.kind == RunNotice::Kind::NetworkFailed || held.kind == RunNotice::Kind::OpTimedOut;
+        if (ofNetwork && !cycleRests) return false;
+        reporter_.tell(held);
+        return true;
+    });
+    recorders_.drain();
+    reporter_.progress(control_.board());
 }
 
 void MachineRun::conclude() {
     if (!server_.finish()) {
-        fail(ExitCode::CouldNotRun,
-             fmt::format("{}: not complete; is the disk full?", options_.recordCommands.string()));
+        console_.error(fmt::format("{}: not complete; is the disk full?", options_.recordCommands.string()));
+        if (code_ == ExitCode::Good) code_ = ExitCode::CouldNotRun;
     }
-    for (const axis::Axis& axis : axes_) {
-        const axis::AxisStatus status = axis.status();
-        if (status.state != axis::AxisState::ErrorStop) continue;
-        fail(ExitCode::MachineFault,
-             fmt::format("axis {} ended in ErrorStop: {}", axis.name(), axis::explain(axis.error())));
-    }
+    if (reporter_.tellAxisErrors(axes_) && code_ == ExitCode::Good) code_ = ExitCode::MachineFault;
     const double simulated = static_cast<double>(now_) * seconds(machine_.network.cycle);
     const double wall = seconds(pace_.elapsed());
     const auto counters = bus_.master().counters();
     console_.line(fmt::format("{:.3f} s in {} cycles, {:.1f} times real time; frames {} sent, {} lost, {} late; "
-                              "working counter errors {}; largest DC phase error {} ns",
+                              "working counter errors {}; largest DC phase error {} ns, controller's clock {:+.1f} ppm "
+                              "against the reference",
                               simulated, now_, wall > 0 ? simulated / wall : 0.0, counters.framesSent, counters.framesLost,
-                              counters.framesLate, counters.workingCounterErrors, cycle_.worstPhaseError().count()));
+                              counters.framesLate, counters.workingCounterErrors, cycle_.worstPhaseError().count(),
+                              dcLock_.driftPpm()));
+    if (onMachine()) tellStatistics();
+}
+
+void MachineRun::tellStatistics() {
+    const CycleStatistics& statistics = cycle_.statistics();
+    console_.line(fmt::format("missed cycles {}, in {} late wake-ups: {} by the host, {} by the bus, {} by programs, {} by "
+                              "axes; DC lock lost {} times",
+                              overruns_.skipped(), overruns_.overruns(), statistics.missedBy[0],
+                              statistics.missedBy[1], statistics.missedBy[2], statistics.missedBy[3], dcLock_.relocks()));
+    for (const std::string& line : describe(statistics)) console_.line(line);
 }
 
 std::string MachineRun::summary() const {
-    return fmt::format("{} cycles of {} us on the simulated machine", now_, machine_.network.cycle.count() / 1000);
-}
-
-core::Duration MachineRun::inPhase() const {
-    return machine_.network.cycle * static_cast<std::int64_t>(now_ - phaseBegan_);
+    return fmt::format("{} cycles of {} us on {}", control_.board().run.read().cycle + 1, machine_.network.cycle.count() / 1000,
+                       onMachine() ? options_.interface : "the simulated machine");
 }
 
 int MachineRun::exitCode() const {

@@ -1,17 +1,25 @@
 #pragma once
 
+#include <atomic>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <takt/daemon/run_options.hpp>
+#include <takt/scheduler/overrun_guard.hpp>
 
 #include "assembly.hpp"
+#include "bus.hpp"
 #include "console.hpp"
 #include "control_server.hpp"
 #include "loading.hpp"
 #include "machine_control.hpp"
 #include "machine_cycle.hpp"
 #include "pace.hpp"
+#include "program_watchdog.hpp"
+#include "realtime_thread.hpp"
+#include "run_notice.hpp"
+#include "run_reporter.hpp"
 #include "stop_request.hpp"
 
 namespace takt::daemon {
@@ -20,12 +28,14 @@ namespace takt::daemon {
 ///
 ///     BringUp → GoingOp → Operating → PoweringOff → LeavingOp → Over
 ///
-/// The cycle itself is in MachineCycle; between two cycles this class looks at what has become of it and
-/// gives the next orders.
+/// The cycle itself is in MachineCycle; after each cycle this class looks at what has become of it and
+/// gives the next orders, still in the cycle's thread and by its rules. What people should know leaves as
+/// notices. In virtual time all of it happens in the calling thread; on a real network the cycle has a
+/// thread of its own and the calling one keeps house: prints, writes files.
 class MachineRun {
 public:
-    /// All must outlive the object. \throw std::runtime_error when the control socket or a file of commands
-    /// cannot be had
+    /// All must outlive the object. \throw std::runtime_error when the network, the control socket
+    /// or a file of commands cannot be had
     MachineRun(const RunOptions& options, LoadedMachine& machine, Recorders& recorders,
                Console& console);
 
@@ -37,20 +47,32 @@ public:
 private:
     using Phase = RunPhase;
 
+    [[nodiscard]] bool onMachine() const noexcept { return !options_.interface.empty(); }
     bool bringUp();
-    void supervise();
-    void superviseGoingOp();
-    void superviseOperating();
-    void supervisePoweringOff();
-    void superviseLeavingOp();
-    void enter(Phase phase);
-    void fail(ExitCode code, const std::string& why);
-    void reportEndedPrograms();
-    void reportMachineStop();
-    void quickStopAll();
-    void showProgress();
+    void begin();
+    void runInline();
+    void runOnThreads();
+    void keepHouse(bool cycleRests);
     void conclude();
-    [[nodiscard]] core::Duration inPhase() const;
+    void tellStatistics();
+    [[noreturn]] void leaveHangingProgram(std::size_t program, core::CycleNumber cycle);
+
+    // rt, after each cycle.
+    void oneCycle() noexcept;
+    void supervise() noexcept;
+    void superviseOverruns(const scheduler::Beat& beat) noexcept;
+    void superviseGoingOp() noexcept;
+    void superviseOperating() noexcept;
+    void supervisePoweringOff() noexcept;
+    void superviseLeavingOp() noexcept;
+    void enter(Phase phase) noexcept;
+    void fail(ExitCode code, RunNotice::Kind kind, std::size_t index = 0) noexcept;
+    void note(RunNotice::Kind kind, std::size_t index = 0, std::uint64_t number = 0) noexcept;
+    void noteEndedPrograms() noexcept;
+    void noteMachineStop() noexcept;
+    void endOperation() noexcept;
+    void quickStopAll() noexcept;
+    [[nodiscard]] core::Duration inPhase() const noexcept;
     [[nodiscard]] int exitCode() const;
 
     const RunOptions& options_;
@@ -60,22 +82,27 @@ private:
     StopRequest stop_;
     Axes& axes_;
     std::vector<ProgramHost>& programs_;
-    std::vector<bool> reported_;  ///< programs whose end has been told
-    SimulatedBus bus_;
+    std::vector<bool> noted_;  ///< programs whose end has been noted
+    Bus bus_;
     scheduler::DcLock dcLock_;
     scheduler::Grid grid_;
+    scheduler::OverrunGuard overruns_;
     MachineControl control_;
     ControlServer server_;
     MachineCycle cycle_;
     Pace pace_;
     CycleOrders orders_;
+    RunNotices notices_;
+    std::vector<RunNotice> heldBack_;  ///< until what they speak of rests
+    RunReporter reporter_;
     Phase phase_{Phase::BringUp};
     core::CycleNumber phaseBegan_{0};
     core::CycleNumber now_{0};
     ExitCode code_{ExitCode::Good};
     bool quickStopped_{false};
     bool stopTimedOut_{false};
-    bool stopReported_{false};  ///< the present machine stop has been told
+    bool stopNoted_{false};  ///< the present machine stop has been noted
+    std::atomic<bool> over_{false};
 };
 
 }  // namespace takt::daemon

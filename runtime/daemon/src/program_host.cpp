@@ -1,39 +1,55 @@
 #include "program_host.hpp"
 
-#include <algorithm>
 #include <exception>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <takt/core/cycle_guard.hpp>
-
 namespace takt::daemon {
+
+namespace {
+
+ProgramPhase phaseAfter(CallAnswer answer) noexcept {
+    switch (answer) {
+        case CallAnswer::Running: return ProgramPhase::Running;
+        case CallAnswer::Finished: return ProgramPhase::Finished;
+        case CallAnswer::Failed: return ProgramPhase::Failed;
+        case CallAnswer::Threw: return ProgramPhase::Threw;
+    }
+    return ProgramPhase::Failed;
+}
+
+}  // namespace
 
 ProgramHost::ProgramHost(program::ProgramParams params, program::ProgramPtr program,
                          std::size_t axisCount, std::uint16_t number)
-    : params_{std::move(params)}, program_{std::move(program)}, ports_(axisCount) {
-    for (Port& port : ports_) port.area = std::make_unique<axis::AxisPort>(number);
+    : params_{std::move(params)},
+      work_{std::make_unique<ProgramWork>(std::move(program), axisCount, number)},
+      commanded_(axisCount, false) {}
+
+ProgramHost::~ProgramHost() {
+    // A call that is still out works on it, until the process ends.
+    if (caller_ && !caller_->retire()) static_cast<void>(work_.release());
 }
 
 std::vector<std::string> ProgramHost::start(const Axes& axes, core::Duration cycle) {
     std::vector<program::Machine::NamedAxis> named;
     std::string known;
     for (std::size_t i = 0; i < axes.size(); ++i) {
-        named.push_back({axes[i].name(), axis::AxisRef{*ports_[i].area}});
+        named.push_back({axes[i].name(), axis::AxisRef{work_->area(i)}});
         known += (i == 0 ? "" : ", ") + axes[i].name();
     }
-    machine_ = std::make_unique<program::Machine>(std::move(named), cycle * params_.everyCycles);
+    work_->setMachine(std::make_unique<program::Machine>(std::move(named), cycle * params_.everyCycles));
     std::vector<std::string> problems;
     try {
-        program_->start(*machine_);
-        program_->describe(inspector_);
+        work_->program().start(work_->machine());
+        work_->program().describe(inspector_);
     } catch (const std::exception& error) {
         problems.push_back(fmt::format("program '{}' threw in start: {}", name(), error.what()));
     } catch (...) {
         problems.push_back(fmt::format("program '{}' threw in start", name()));
     }
-    for (const std::string& axis : machine_->unknownAxes()) {
+    for (const std::string& axis : work_->machine().unknownAxes()) {
         problems.push_back(fmt::format("program '{}' asks for axis '{}', which does not exist; allowed: {}",
                                        name(), axis, known));
     }
@@ -41,66 +57,73 @@ std::vector<std::string> ProgramHost::start(const Axes& axes, core::Duration cyc
 }
 
 void ProgramHost::cycle(core::CycleNumber cycle, Axes& axes) noexcept {
-    if (ended() || held_ || cycle % params_.everyCycles != 0) return;
-    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].openPort(*ports_[i].area);
-    call(cycle);
-    const bool commandsCount = phase_ == ProgramPhase::Running || phase_ == ProgramPhase::Finished;
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        Port& port = ports_[i];
-        port.used = port.used || !port.area->commands().empty();
-        if (commandsCount) {
-            axes[i].takeCommands(*port.area);
-        } else if (port.used) {
-            axes[i].stopByProgramLoss();
-        }
+    if (ended()) return;
+    if (!caller_->underWay()) {
+        if (held_ || cycle % params_.everyCycles != 0) return;
+        open(axes);
+        phase_ = ProgramPhase::Running;
     }
+    switch (caller_->call(*work_, cycle)) {
+        case CallOutcome::Late: return;
+        case CallOutcome::Abandoned:
+            end(ProgramPhase::Abandoned, cycle);
+            return stopAxes(axes);
+        case CallOutcome::CameBack: break;
+    }
+    const ProgramPhase phase = phaseAfter(work_->answer());
+    if (phase != ProgramPhase::Running) end(phase, cycle);
+    settle(axes);
 }
 
-void ProgramHost::call(core::CycleNumber cycle) noexcept {
-    phase_ = ProgramPhase::Running;
-    machine_->setCycle(calls_++);
-    const core::ProgramCallGuard section;
-    try {
-        switch (program_->cycle(*machine_)) {
-            case program::ProgramState::Running: break;
-            case program::ProgramState::Finished: end(ProgramPhase::Finished, {}, cycle); break;
-            case program::ProgramState::Failed:
-                end(ProgramPhase::Failed, machine_->failure(), cycle);
-                break;
-        }
-    } catch (const std::exception& error) {
-        end(ProgramPhase::Threw, error.what(), cycle);
-    } catch (...) {
-        end(ProgramPhase::Threw, "an exception that is not a std::exception", cycle);
+void ProgramHost::open(Axes& axes) noexcept {
+    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].openPort(work_->area(i));
+}
+
+void ProgramHost::settle(Axes& axes) noexcept {
+    // What a call brings that was still out when its program was stopped comes too late.
+    const bool commandsCount =
+        !held_ && (phase_ == ProgramPhase::Running || phase_ == ProgramPhase::Finished);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        axis::AxisPort& area = work_->area(i);
+        if (!area.commands().empty()) commanded_[i] = true;
+        if (commandsCount) axes[i].takeCommands(area);
+    }
+    if (!commandsCount) stopAxes(axes);
+}
+
+void ProgramHost::stopAxes(Axes& axes) noexcept {
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        if (commanded_[i]) axes[i].stopByProgramLoss();
     }
 }
 
 void ProgramHost::hold(Axes& axes) noexcept {
     if (ended() || held_) return;
     held_ = true;
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        if (ports_[i].used) axes[i].stopByProgramLoss();
-    }
+    stopAxes(axes);
 }
 
-void ProgramHost::end(ProgramPhase phase, std::string_view why, core::CycleNumber cycle) noexcept {
+void ProgramHost::end(ProgramPhase phase, core::CycleNumber cycle) noexcept {
     phase_ = phase;
     endCycle_ = cycle;
-    failureSize_ = std::min(why.size(), failure_.size());
-    std::copy_n(why.begin(), failureSize_, failure_.begin());
 }
 
 void ProgramHost::stop() {
-    if (!program_) return;
+    if (caller_ && !caller_->retire()) return;
     try {
-        program_->stop();
+        work_->program().stop();
     } catch (...) {
         // The machine is already safe; what a program throws in its farewell changes nothing.
         return;
     }
 }
 
+std::string_view ProgramHost::failure() const noexcept {
+    return phase_ == ProgramPhase::Abandoned ? std::string_view{} : work_->failure();
+}
+
 std::string ProgramHost::watches() const {
+    if (phase_ == ProgramPhase::Abandoned) return {};  // it may be writing them
     std::string text;
     for (const program::Watch& watch : inspector_.watches()) {
         text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", watch.name, watch.text());

@@ -20,6 +20,9 @@ int run(const RunOptions& options, std::vector<LinkedProgram> linked) {
         const int code = machineRun.execute();
         const auto problems = recorders.finish(machine->config.name, machineRun.summary());
         for (const std::string& problem : problems) console.error(problem);
+        if (const record::PcapngWriter* capture = recorders.capture()) {
+            console.line(fmt::format("capture: {} frames, each sent and returned", capture->packets()));
+        }
         if (!options.plot.empty()) console.line(fmt::format("plot: {}", options.plot.string()));
         return code == 0 && !problems.empty() ? static_cast<int>(ExitCode::CouldNotRun) : code;
     } catch (const std::runtime_error& error) {

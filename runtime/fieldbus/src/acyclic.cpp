@@ -7,7 +7,7 @@ namespace takt::fieldbus::ethercat {
 bool AcyclicSlice::add(FrameSet& frames, std::size_t machine, const Request& request,
                        std::size_t& budget) noexcept {
     const std::size_t bytes = wire::DatagramOverhead + request.length;
-    if (bytes > budget) return false;
+    if (bytes > budget || frames.full()) return false;
     if (request.length > frames.room() || frames.room() == 0) {
         // One frame more at most: fill() is called with one frame left.
         if (!frames.openFrame() || request.length > frames.room()) return false;
@@ -22,6 +22,7 @@ bool AcyclicSlice::add(FrameSet& frames, std::size_t machine, const Request& req
 void AcyclicSlice::fill(FrameSet& frames, std::span<AcyclicMachine* const> machines,
                         std::size_t budget, core::HostTime now) noexcept {
     waiting_.clear();
+    if (work_.empty()) return;
     const std::size_t start = start_;
     // From where the last slice was full to the end, then from the beginning.
     for (const bool wrapped : {false, true}) {
@@ -48,6 +49,7 @@ void AcyclicSlice::deliver(const FrameSet& frames, std::span<AcyclicMachine* con
         machine.take(now, frames.reply(waiting.datagram));
         if (!machine.busy()) work_.clear(waiting.machine);
     }
+    waiting_.clear();
 }
 
 }  // namespace takt::fieldbus::ethercat

@@ -52,6 +52,12 @@ public:
 
     void set(std::size_t i) noexcept { words_[i / 64] |= std::uint64_t{1} << (i % 64); }
     void clear(std::size_t i) noexcept { words_[i / 64] &= ~(std::uint64_t{1} << (i % 64)); }
+    /// rt.
+    [[nodiscard]] bool empty() const noexcept {
+        std::uint64_t any = 0;
+        for (const std::uint64_t word : words_) any |= word;
+        return any == 0;
+    }
     /// rt. The first member at or after `from`; `none()` when there is none.
     [[nodiscard]] std::size_t firstFrom(std::size_t from) const noexcept {
         for (std::size_t word = from / 64; word < words_.size(); ++word) {
@@ -76,6 +82,8 @@ public:
     }
 
     [[nodiscard]] WorkSet& work() noexcept { return work_; }
+    /// rt. No machine has work and none waits for a reply.
+    [[nodiscard]] bool idle() const noexcept { return work_.empty() && waiting_.empty(); }
 
     /// rt. Adds at most `budget` bytes of datagrams to the open frame, and to one more frame if
     /// needed.
@@ -85,14 +93,15 @@ public:
     void deliver(const FrameSet& frames, std::span<AcyclicMachine* const> machines,
                  core::HostTime now) noexcept;
 
+    /// rt. How many machines wait for a reply.
+    [[nodiscard]] std::size_t waiting() const noexcept { return waiting_.size(); }
+
+private:
     struct Waiting {
         std::uint16_t machine{0};
         DatagramId datagram{0};
     };
-    /// rt. The machines that took part in the last exchange.
-    [[nodiscard]] std::span<const Waiting> taken() const noexcept { return waiting_; }
 
-private:
     bool add(FrameSet& frames, std::size_t machine, const Request& request,
              std::size_t& budget) noexcept;
 

@@ -100,6 +100,18 @@ void BringUp::checkParams() {
             blame(i, "has no device description");
             continue;
         }
+        if (slave.position != i) {
+            blame(i, fmt::format("is configured for position {}; devices must be listed in frame "
+                                 "order",
+                                 slave.position));
+        }
+        for (const StartupObject& object : slave.startup) {
+            if (!object.data.empty() && object.data.size() <= sizeof(core::ObjectValue::bytes))
+                continue;
+            blame(i, fmt::format(
+                         "start-up object {:04X}h:{:02X} ({}) has {} bytes, allowed are 1 to 8",
+                         object.index, object.subindex, object.origin, object.data.size()));
+        }
         if (slave.watchdog.count() <= 0) {
             blame(i,
                   "the process-data watchdog must not be off: outputs would stay on when the "

@@ -40,7 +40,7 @@ void DeviceScan::enter(Phase phase, core::HostTime now) noexcept {
 
 bool DeviceScan::next(core::HostTime now, Request& request) noexcept {
     if (!busy()) return false;
-    if (!deadline_) enter(Phase::AwaitInit, now);
+    if (!deadline_) enter(phase_, now);
     if (now > *deadline_) {
         result_ = phase_ == Phase::AwaitInit ? Result::NotInInit : Result::EepromFailed;
         return false;

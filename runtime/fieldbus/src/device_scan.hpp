@@ -40,7 +40,11 @@ class DeviceScan final : public AcyclicMachine {
 public:
     enum class Result : std::uint8_t { Busy, Done, Silent, NotInInit, EepromFailed };
 
-    explicit DeviceScan(std::uint16_t station) : station_{station} {}
+    /// From which state the device may be looked at: bring-up wants it to have arrived in INIT.
+    enum class From : std::uint8_t { Init, AnyState };
+
+    explicit DeviceScan(std::uint16_t station, From from = From::Init)
+        : station_{station}, phase_{from == From::Init ? Phase::AwaitInit : Phase::Information} {}
 
     bool next(core::HostTime now, Request& request) noexcept override;
     void take(core::HostTime now, const Reply& reply) noexcept override;
@@ -66,7 +70,7 @@ private:
     void enter(Phase phase, core::HostTime now) noexcept;
 
     std::uint16_t station_;
-    Phase phase_{Phase::AwaitInit};
+    Phase phase_;
     Result result_{Result::Busy};
     std::optional<core::HostTime> deadline_;
     core::HostTime lookAt_{};

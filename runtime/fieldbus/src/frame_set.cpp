@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <takt/wire/byte_io.hpp>
 #include <utility>
 
 namespace takt::fieldbus::ethercat {
@@ -27,20 +28,58 @@ constexpr bool positionCounts(wire::Command command) noexcept {
     }
 }
 
+// Of the first eight bytes of a datagram header (command, index, address, length) devices change
+// the circulating bit and, in some commands, the position.
+constexpr std::uint64_t FixedOfOthers = ~(std::uint64_t{1} << 62);
+constexpr std::uint64_t FixedOfPosition = FixedOfOthers & ~std::uint64_t{0xFFFF'0000};
+
 }  // namespace
 
 FrameSet::FrameSet(std::size_t maxFrames, std::size_t maxDatagrams)
-    : frames_(maxFrames), slots_(maxFrames), slotOf_(maxFrames, NoReply), firstOf_(maxFrames + 1) {
-    assert(maxFrames > 0 && maxFrames < NoReply);
+    : frames_(maxFrames), slots_(maxFrames), replyOf_(maxFrames, nullptr), firstOf_(maxFrames + 1) {
+    assert(maxFrames > 0 && maxFrames < 256);
     datagrams_.reserve(maxDatagrams);
 }
 
-void FrameSet::begin() noexcept {
+void FrameSet::countUp() noexcept {
     firstIndex_ = static_cast<std::uint8_t>(firstIndex_ + frameCount_);
-    frameCount_ = 0;
-    datagrams_.clear();
+    for (std::size_t i = 0; i < frameCount_; ++i) replyOf_[i] = nullptr;
+}
+
+void FrameSet::begin() noexcept {
     writer_.reset();
-    std::fill(slotOf_.begin(), slotOf_.end(), NoReply);
+    countUp();
+    frameCount_ = keptFrames_ = keptDatagrams_ = 0;
+    reopened_ = false;
+    datagrams_.clear();
+}
+
+void FrameSet::keep() noexcept {
+    finish();
+    keptFrames_ = frameCount_;
+    keptDatagrams_ = datagrams_.size();
+}
+
+void FrameSet::repeat() noexcept {
+    if (writer_) finish();
+    countUp();
+    frameCount_ = keptFrames_;
+    if (datagrams_.size() != keptDatagrams_) datagrams_.resize(keptDatagrams_);
+    for (const Sent& sent : datagrams_) {
+        frames_[sent.frame].bytes[sent.at + 1U] = indexOf(sent.frame);
+    }
+    if (reopened_) {
+        reopen();
+        finish();
+        reopened_ = false;
+    }
+    firstOf_[frameCount_] = static_cast<std::uint16_t>(keptDatagrams_);
+}
+
+void FrameSet::reopen() noexcept {
+    const Sent& last = datagrams_[keptDatagrams_ - 1];
+    writer_.emplace(frames_[frameCount_ - 1], wire::DatagramPlace{last.at, last.length});
+    reopened_ = true;
 }
 
 bool FrameSet::openFrame() noexcept {
@@ -53,37 +92,34 @@ bool FrameSet::openFrame() noexcept {
 }
 
 std::size_t FrameSet::room() const noexcept {
-    if (!writer_ || datagrams_.size() == datagrams_.capacity()) return 0;
-    return writer_->room();
+    if (full()) return 0;
+    if (writer_) return writer_->room();
+    if (!reopenable()) return 0;
+    const std::size_t used = datagrams_.back().end() + wire::DatagramOverhead;
+    return used >= wire::MaxFrameSize ? 0 : wire::MaxFrameSize - used;
 }
 
-std::uint8_t FrameSet::openIndex() const noexcept {
-    return static_cast<std::uint8_t>(firstIndex_ + frameCount_ - 1);
-}
-
-DatagramId FrameSet::remember(wire::Command command, std::uint32_t address,
-                              wire::DatagramPlace place) noexcept {
+DatagramId FrameSet::remember(wire::Command command, wire::DatagramPlace place) noexcept {
     const auto id = static_cast<DatagramId>(datagrams_.size());
-    datagrams_.push_back({place, address, command, static_cast<std::uint8_t>(frameCount_ - 1)});
+    const std::uint64_t fixed = positionCounts(command) ? FixedOfPosition : FixedOfOthers;
+    datagrams_.push_back({fixed, place.offset, static_cast<std::uint16_t>(place.dataOffset()),
+                          place.length, static_cast<std::uint8_t>(frameCount_ - 1)});
     return id;
 }
 
 DatagramId FrameSet::append(wire::Command command, std::uint16_t adp, std::uint16_t ado,
                             std::uint16_t length) noexcept {
     assert(length <= room());
-    return remember(command, adp | (std::uint32_t{ado} << 16),
-                    writer_->append(command, openIndex(), adp, ado, length));
+    if (!writer_) reopen();
+    return remember(command, writer_->append(command, indexOf(frameCount_ - 1), adp, ado, length));
 }
 
 DatagramId FrameSet::appendLogical(wire::Command command, std::uint32_t address,
                                    std::uint16_t length) noexcept {
     assert(length <= room());
-    return remember(command, address,
-                    writer_->appendLogical(command, openIndex(), address, length));
-}
-
-std::span<std::uint8_t> FrameSet::data(DatagramId id) noexcept {
-    return writer_->data(datagrams_[id].place);
+    if (!writer_) reopen();
+    return remember(command,
+                    writer_->appendLogical(command, indexOf(frameCount_ - 1), address, length));
 }
 
 void FrameSet::finish() noexcept {
@@ -102,29 +138,33 @@ wire::LinkStatus FrameSet::send(wire::Link& link) noexcept {
     return status;
 }
 
-FrameSet::Verdict FrameSet::judge(wire::Frame& frame, std::size_t& which) const noexcept {
-    wire::DatagramCursor cursor{frame.view()};
-    if (cursor.malformed()) return Verdict::Foreign;
-    if ((frame.bytes[6] & wire::SourceSeenBit) == 0) return Verdict::Foreign;
-    if (!cursor.next()) return Verdict::Malformed;
-    const std::uint8_t index = cursor.datagram().index();
-    which = static_cast<std::uint8_t>(index - firstIndex_);
-    if (which >= frameCount_) return Verdict::Late;
-    if (slotOf_[which] != NoReply) return Verdict::Duplicate;
-    const std::size_t end = firstOf_[which + 1];
-    for (std::size_t i = firstOf_[which]; i < end; ++i) {
-        const Sent& sent = datagrams_[i];
-        const wire::DatagramView& got = cursor.datagram();
-        const std::uint32_t fixed = positionCounts(sent.command) ? 0xFFFF0000U : 0xFFFFFFFFU;
-        if (got.rawCommand() != static_cast<std::uint8_t>(sent.command) || got.index() != index ||
-            got.data().size() != sent.place.length ||
-            ((got.logicalAddress() ^ sent.address) & fixed) != 0) {
-            return Verdict::Malformed;
-        }
-        const bool more = cursor.next();
-        if (more != (i + 1 < end)) return Verdict::Malformed;
+FrameSet::Verdict FrameSet::judge(const wire::Frame& frame, std::size_t& which) const noexcept {
+    constexpr std::size_t etherTypeAt = 12;
+    constexpr std::size_t firstDatagram = wire::EthernetHeaderSize + wire::EtherCatHeaderSize;
+    const std::span<const std::uint8_t> got = frame.view();
+    if (got.size() < firstDatagram + wire::DatagramOverhead) return Verdict::Foreign;
+    if (got[etherTypeAt] != wire::EtherType >> 8 ||
+        got[etherTypeAt + 1] != (wire::EtherType & 0xFF)) {
+        return Verdict::Foreign;
     }
-    return cursor.malformed() ? Verdict::Malformed : Verdict::Accepted;
+    if ((got[6] & wire::SourceSeenBit) == 0) return Verdict::Foreign;
+    which = static_cast<std::uint8_t>(got[firstDatagram + 1] - firstIndex_);
+    if (which >= frameCount_) return Verdict::Late;
+    if (replyOf_[which] != nullptr) return Verdict::Duplicate;
+    // A reply has the layout of the request, so that nothing in it needs to be trusted.
+    const Sent* const first = &datagrams_[firstOf_[which]];
+    const Sent* const last = &datagrams_[firstOf_[which + 1] - 1U];
+    const std::span<const std::uint8_t> sent{frames_[which].bytes};
+    if (got.size() < last->end() || wire::load16(got, wire::EthernetHeaderSize) !=
+                                        wire::load16(sent, wire::EthernetHeaderSize)) {
+        return Verdict::Malformed;
+    }
+    std::uint64_t different = 0;
+    for (const Sent* datagram = first; datagram <= last; ++datagram) {
+        different |=
+            (wire::load64(got, datagram->at) ^ wire::load64(sent, datagram->at)) & datagram->fixed;
+    }
+    return different == 0 ? Verdict::Accepted : Verdict::Malformed;
 }
 
 void FrameSet::count(Verdict verdict) noexcept {
@@ -160,21 +200,10 @@ void FrameSet::receive(wire::Link& link, core::HostTime deadline) noexcept {
             if (verdict != Verdict::Accepted) continue;
             // Kept replies stay in front, so that the free slots are one span.
             if (i != kept) std::swap(slots_[i], slots_[kept]);
-            slotOf_[which] = static_cast<std::uint8_t>(kept++);
+            replyOf_[which] = slots_[kept++].bytes.data();
         }
     }
     counters_.lost += frameCount_ - kept;
-}
-
-Reply FrameSet::reply(DatagramId id) const noexcept {
-    const Sent& sent = datagrams_[id];
-    const std::uint8_t slot = slotOf_[sent.frame];
-    if (slot == NoReply) return {};
-    const std::span<const std::uint8_t> bytes = slots_[slot].view();
-    const std::size_t at = sent.place.dataOffset();
-    const std::size_t end = at + sent.place.length;
-    return {true, static_cast<std::uint16_t>(bytes[end] | (bytes[end + 1] << 8)),
-            bytes.subspan(at, sent.place.length)};
 }
 
 }  // namespace takt::fieldbus::ethercat

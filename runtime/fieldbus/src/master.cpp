@@ -14,22 +14,17 @@ namespace {
 constexpr std::size_t MostDatagramsInFrame = 128;
 constexpr std::uint64_t MailboxLookGap = 8;  ///< cycles, for slaves without a mailbox state FMMU
 
-NetworkParams inFrameOrder(NetworkParams network) {
-    std::stable_sort(
-        network.slaves.begin(), network.slaves.end(),
-        [](const SlaveParams& a, const SlaveParams& b) { return a.position < b.position; });
-    return network;
-}
-
 }  // namespace
 
 struct Master::Parts {
     Parts(const NetworkParams& params, wire::Link& wireLink, core::ClockSource& clockSource);
 
     void exchange(core::CycleNumber cycle) noexcept;
+    void compose() noexcept;
     void prepare() noexcept;
     void takeBus() noexcept;
     void takeMailboxStates() noexcept;
+    void fetchMail(std::span<const std::uint8_t> states) noexcept;
     void lookIntoMailboxes() noexcept;
     void appendExtras() noexcept;
     [[nodiscard]] bool mapped() const noexcept;
@@ -60,7 +55,7 @@ struct Master::Parts {
 
 Master::Parts::Parts(const NetworkParams& params, wire::Link& wireLink,
                      core::ClockSource& clockSource)
-    : network{inFrameOrder(params)},
+    : network{params},
       link{wireLink},
       clock{clockSource},
       timing{computeTiming(network)},
@@ -88,7 +83,8 @@ bool Master::Parts::mapped() const noexcept {
     return walk.state() != NetworkState::Off && walk.state() != NetworkState::Init;
 }
 
-void Master::Parts::prepare() noexcept {
+/// Puts together once what goes out in every cycle.
+void Master::Parts::compose() noexcept {
     frames.begin();
     for (std::size_t i = 0; i < layout.groups.size(); ++i) {
         frames.openFrame();
@@ -96,7 +92,14 @@ void Master::Parts::prepare() noexcept {
         data.append(frames, i);
         if (i == 0) appendExtras();
     }
-    slice.fill(frames, machines, timing.acyclicBytes, now);
+    frames.keep();
+}
+
+void Master::Parts::prepare() noexcept {
+    frames.repeat();
+    if (reference.present()) reference.fill(frames);
+    data.fill(frames);
+    if (!slice.idle()) slice.fill(frames, machines, timing.acyclicBytes, now);
     frames.finish();
     prepared = true;
 }
@@ -119,7 +122,7 @@ void Master::Parts::exchange(core::CycleNumber cycle) noexcept {
     if (reference.present()) reference.take(frames);
     data.take(frames, walk.supervised());
     takeBus();
-    slice.deliver(frames, machines, now);
+    if (!slice.idle()) slice.deliver(frames, machines, now);
     takeMailboxStates();
     walk.step(cycle, now, reading);
 }
@@ -135,15 +138,18 @@ void Master::Parts::takeBus() noexcept {
 
 void Master::Parts::takeMailboxStates() noexcept {
     if (!mapped()) return;
-    lookIntoMailboxes();
+    if (!unmappedMailboxes.empty()) lookIntoMailboxes();
     if (layout.mailboxBits == 0) return;
     const Reply reply = frames.reply(mailboxRead);
     if (!reply.served()) return;
-    for (std::size_t byte = 0; byte < reply.data.size(); ++byte) {
-        for (unsigned bits = reply.data[byte]; bits != 0; bits &= bits - 1) {
-            const std::size_t bit = byte * 8 + static_cast<std::size_t>(std::countr_zero(bits));
-            if (bit < mailboxSlave.size()) agents[mailboxSlave[bit]]->mailboxFull();
-        }
+    unsigned any = 0;
+    for (const std::uint8_t byte : reply.data) any |= byte;
+    if (any != 0) fetchMail(reply.data);
+}
+
+void Master::Parts::fetchMail(std::span<const std::uint8_t> states) noexcept {
+    for (std::size_t bit = 0; bit < mailboxSlave.size(); ++bit) {
+        if ((states[bit / 8] >> (bit % 8) & 1U) != 0) agents[mailboxSlave[bit]]->mailboxFull();
     }
 }
 
@@ -162,6 +168,7 @@ Master::~Master() = default;
 std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string_view)>& progress) {
     Parts& parts = *parts_;
     parts.walk.off();
+    parts.prepared = false;
     parts.data.reset();
     Conversation talk{parts.frames, parts.link, parts.clock};
     BringUp bringUp{{parts.network, parts.layout, parts.slice, parts.machines, parts.agents,
@@ -174,6 +181,7 @@ std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string
     parts.reading = {};
     parts.cycles = 0;
     parts.now = parts.clock.now();
+    parts.compose();
     parts.prepare();
     parts.frames.resetCounters();
     return problems;
@@ -184,10 +192,11 @@ core::HostTime Master::firstSend(core::HostTime notBefore) const noexcept {
 }
 
 void Master::exchange(core::CycleNumber cycle) noexcept {
-    parts_->exchange(cycle);
+    // Without a configured network there is nothing that could be sent.
+    if (state() != NetworkState::Off) parts_->exchange(cycle);
 }
 void Master::prepare() noexcept {
-    parts_->prepare();
+    if (state() != NetworkState::Off) parts_->prepare();
 }
 void Master::requestOp() noexcept {
     parts_->walk.requestOp();

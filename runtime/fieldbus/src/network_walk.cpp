@@ -153,7 +153,9 @@ void NetworkWalk::climbed(NetworkState reached) noexcept {
 void NetworkWalk::startWaiting(core::HostTime now) noexcept {
     waitUntil_ = now + ReadyTimeout;
     goodInRow_ = quietRounds_ = 0;
-    for (const auto& agent : agents_) agent->wantDifference();
+    for (std::size_t i = 0; i < agents_.size(); ++i) {
+        if (network_.slaves[i].dc.enabled) agents_[i]->wantDifference();
+    }
 }
 
 /// One round of 0x092C reads after the other; all must stay below the limit.
@@ -164,7 +166,7 @@ bool NetworkWalk::clocksQuiet() noexcept {
         if (!network_.slaves[i].dc.enabled || i == reference_) continue;
         const auto& difference = agents_[i]->difference();
         complete = complete && !agents_[i]->differencePending();
-        below = below && (!difference || *difference < network_.dcLimit);
+        below = below && difference && *difference < network_.dcLimit;
     }
     if (!complete) return false;
     if (quietRounds_ < QuietRoundsBeforeOp) quietRounds_ = below ? quietRounds_ + 1 : 0;

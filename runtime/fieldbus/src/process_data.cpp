@@ -56,17 +56,22 @@ void ProcessData::setOperational(std::size_t slave, bool operational,
 void ProcessData::append(FrameSet& frames, std::size_t group) noexcept {
     const ProcessGroup& data = layout_.groups[group];
     Buffers& buffers = buffers_[group];
-    const auto both = static_cast<std::uint16_t>(data.outputBytes + data.inputBytes);
-    buffers.first = data.lrw
-                        ? frames.appendLogical(wire::Command::Lrw, data.logical, both)
-                        : frames.appendLogical(wire::Command::Lwr, data.logical, data.outputBytes);
-    if (data.outputBytes != 0) {
-        std::memcpy(frames.data(buffers.first).data(), &outputs_[buffers.outputs],
-                    data.outputBytes);
-    }
-    if (!data.lrw) {
-        buffers.second =
-            frames.appendLogical(wire::Command::Lrd, data.inputLogical(), data.inputBytes);
+    // A datagram without data is not worth sending: nobody counts it, and nobody counts a NOP.
+    const auto add = [&frames](wire::Command command, std::uint32_t address, std::size_t size) {
+        return size == 0 ? frames.append(wire::Command::Nop, 0, 0, 1)
+                         : frames.appendLogical(command, address, static_cast<std::uint16_t>(size));
+    };
+    const std::size_t both = std::size_t{data.outputBytes} + data.inputBytes;
+    buffers.first = data.lrw ? add(wire::Command::Lrw, data.logical, both)
+                             : add(wire::Command::Lwr, data.logical, data.outputBytes);
+    if (!data.lrw) buffers.second = add(wire::Command::Lrd, data.inputLogical(), data.inputBytes);
+}
+
+void ProcessData::fill(FrameSet& frames) noexcept {
+    for (std::size_t i = 0; i < buffers_.size(); ++i) {
+        const std::size_t size = layout_.groups[i].outputBytes;
+        if (size == 0) continue;
+        std::memcpy(frames.data(buffers_[i].first).data(), &outputs_[buffers_[i].outputs], size);
     }
 }
 
@@ -79,13 +84,13 @@ ProcessData::Outcome ProcessData::judge(const FrameSet& frames, std::size_t grou
     if (data.lrw) {
         counters.lastSeen = first.workingCounter;
         return {true, first.workingCounter == counters.expected,
-                first.data.subspan(data.outputBytes)};
+                first.data.subspan(data.outputBytes, data.inputBytes)};
     }
     // Both datagrams travel in the same frame.
     const Reply second = frames.reply(buffers.second);
     counters.lastSeen = static_cast<std::uint16_t>(first.workingCounter + second.workingCounter);
     return {true, first.workingCounter == data.writers && second.workingCounter == data.readers,
-            second.data};
+            second.data.first(data.inputBytes)};
 }
 
 void ProcessData::take(const FrameSet& frames, bool supervised) noexcept {

@@ -18,8 +18,10 @@ public:
     /// `layout` must outlive this object.
     explicit ProcessData(const LogicalLayout& layout);
 
-    /// rt. Appends the datagrams of one group to the open frame; outputs are copied in.
+    /// Appends the datagrams of one group to the open frame.
     void append(FrameSet& frames, std::size_t group) noexcept;
+    /// rt. Copies all outputs into their datagrams.
+    void fill(FrameSet& frames) noexcept;
     /// rt. Takes the replies of all groups. While `supervised` is false a wrong working counter is
     /// normal.
     void take(const FrameSet& frames, bool supervised) noexcept;

@@ -25,7 +25,10 @@ void ReferenceClock::forget() noexcept {
 
 void ReferenceClock::append(FrameSet& frames) noexcept {
     datagram_ = frames.append(wire::Command::Frmw, station_, wire::reg::DcSystemTime, TimeBytes);
-    // Devices before the reference are written with what is sent: give them the best guess.
+    fill(frames);
+}
+
+void ReferenceClock::fill(FrameSet& frames) const noexcept {
     const core::DcTime guess = sample_.referenceTime + cycle_;
     wire::store64(frames.data(datagram_), 0,
                   static_cast<std::uint64_t>(guess.time_since_epoch().count()));
@@ -35,6 +38,7 @@ void ReferenceClock::take(const FrameSet& frames) noexcept {
     const Reply reply = frames.reply(datagram_);
     sample_.valid = reply.served();
     if (!sample_.valid) return;
+    sample_.sent = frames.sentAt();
     std::uint64_t time = wire::load64(reply.data, 0);
     if (!wide_) {
         const auto guess =

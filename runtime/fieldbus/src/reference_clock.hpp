@@ -24,6 +24,8 @@ public:
 
     /// rt. Appends the FRMW of register 0x0910. \pre present()
     void append(FrameSet& frames) noexcept;
+    /// rt. Devices before the reference are written with what is sent: puts in the best guess.
+    void fill(FrameSet& frames) const noexcept;
     /// rt. Takes its reply.
     void take(const FrameSet& frames) noexcept;
     [[nodiscard]] const DcSample& sample() const noexcept { return sample_; }

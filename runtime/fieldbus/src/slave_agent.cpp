@@ -11,7 +11,7 @@ namespace {
 namespace reg = wire::reg;
 
 constexpr std::uint8_t RegisterTries = 5;
-constexpr std::uint8_t StatusTries = 3;
+constexpr std::uint8_t ReadTries = 3;
 constexpr std::uint32_t DifferenceMask = 0x7FFF'FFFF;  ///< sign-magnitude: the sign is for display
 constexpr std::uint32_t NoDictionary = 0x0800'0023;
 
@@ -60,7 +60,9 @@ void SlaveAgent::wantStatus() noexcept {
 }
 
 void SlaveAgent::wantDifference() noexcept {
+    if (differenceWanted_) return;
     differenceWanted_ = true;
+    differenceTries_ = 0;
     wake();
 }
 
@@ -130,16 +132,18 @@ bool SlaveAgent::nextOfScript(core::HostTime now, Request& request) noexcept {
         endStateStep();
         return false;
     }
-    const auto& object = std::get<ObjectStep>(step);
-    if (!stepStarted_) {
-        if (!coe_) {
-            fail({ScriptFailure::Kind::ObjectAborted, object.address.index, object.address.subindex,
-                  NoDictionary, wire::AlState::None, al_});
-            return false;
-        }
-        stepStarted_ = coe_->client.startWrite(object.address, object.value);
-    }
+    if (const auto* object = std::get_if<ObjectStep>(&step)) startObjectStep(*object);
     return false;  // the mailbox has the next datagram
+}
+
+void SlaveAgent::startObjectStep(const ObjectStep& step) noexcept {
+    if (stepStarted_) return;
+    if (coe_) {
+        stepStarted_ = coe_->client.startWrite(step.address, step.value);
+    } else {
+        fail({ScriptFailure::Kind::ObjectAborted, step.address.index, step.address.subindex,
+              NoDictionary, wire::AlState::None, al_});
+    }
 }
 
 bool SlaveAgent::nextOfMailbox(core::HostTime now, Request& request) noexcept {
@@ -158,10 +162,7 @@ void SlaveAgent::take(core::HostTime now, const Reply& reply) noexcept {
             takeStatus(reply);
             break;
         case Job::Difference:
-            if (reply.served()) {
-                difference_ = core::Duration{wire::load32(reply.data, 0) & DifferenceMask};
-                differenceWanted_ = false;
-            }
+            takeDifference(reply);
             break;
         case Job::Walk:
             walker_.take(now, reply);
@@ -185,19 +186,30 @@ void SlaveAgent::takeStatus(const Reply& reply) noexcept {
         al_ = decodeAlStatus(reply.data);
         answers_ = true;
         statusWanted_ = false;
-    } else if (++statusTries_ >= StatusTries) {
+    } else if (++statusTries_ >= ReadTries) {
         answers_ = false;
         statusWanted_ = false;
     }
 }
 
+void SlaveAgent::takeDifference(const Reply& reply) noexcept {
+    if (reply.served()) {
+        difference_ = core::Duration{wire::load32(reply.data, 0) & DifferenceMask};
+        differenceWanted_ = false;
+    } else if (++differenceTries_ >= ReadTries) {
+        difference_.reset();
+        differenceWanted_ = false;
+    }
+}
+
 void SlaveAgent::takeRegister(const Reply& reply) noexcept {
-    const auto& write = std::get<RegisterStep>((*script_)[position_]);
+    const auto* write = std::get_if<RegisterStep>(&(*script_)[position_]);
+    if (write == nullptr) return;
     if (reply.served()) {
         stepDone();
     } else if (++registerTries_ >= RegisterTries) {
-        if (write.required) {
-            fail({ScriptFailure::Kind::RegisterSilent, write.address, 0, 0, wire::AlState::None,
+        if (write->required) {
+            fail({ScriptFailure::Kind::RegisterSilent, write->address, 0, 0, wire::AlState::None,
                   al_});
         } else {
             stepDone();
@@ -239,22 +251,22 @@ void SlaveAgent::afterMailbox() noexcept {
     if (userRequest_) {
         userRequest_ = false;
         userReply_ = reply;
-    } else if (scriptState_ == ScriptState::Running && stepStarted_ &&
-               std::holds_alternative<ObjectStep>((*script_)[position_])) {
-        endObjectStep();
+    } else if (scriptState_ == ScriptState::Running && stepStarted_) {
+        if (const auto* object = std::get_if<ObjectStep>(&(*script_)[position_])) {
+            endObjectStep(*object);
+        }
     }
 }
 
-void SlaveAgent::endObjectStep() noexcept {
-    const auto& object = std::get<ObjectStep>((*script_)[position_]);
+void SlaveAgent::endObjectStep(const ObjectStep& step) noexcept {
     const core::ObjectReply& reply = coe_->client.reply();
     if (reply.state == core::ObjectState::Failed) {
-        if (object.required) {
-            fail({ScriptFailure::Kind::ObjectAborted, object.address.index, object.address.subindex,
+        if (step.required) {
+            fail({ScriptFailure::Kind::ObjectAborted, step.address.index, step.address.subindex,
                   reply.abortCode, wire::AlState::None, al_});
             return;
         }
-        notes_.push({object.address, reply.abortCode});
+        notes_.push({step.address, reply.abortCode});
     }
     stepDone();
 }

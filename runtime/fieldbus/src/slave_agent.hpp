@@ -71,7 +71,7 @@ public:
     /// The slave answered the last time it was asked for its AL status.
     [[nodiscard]] bool answers() const noexcept { return answers_; }
     [[nodiscard]] bool statusPending() const noexcept { return statusWanted_; }
-    /// Magnitude of 0x092C as last read; empty: not read since reset.
+    /// Magnitude of 0x092C as last read; empty: the slave did not tell.
     [[nodiscard]] const std::optional<core::Duration>& difference() const noexcept {
         return difference_;
     }
@@ -103,10 +103,12 @@ private:
     bool nextOfScript(core::HostTime now, Request& request) noexcept;
     bool nextOfMailbox(core::HostTime now, Request& request) noexcept;
     void takeStatus(const Reply& reply) noexcept;
+    void takeDifference(const Reply& reply) noexcept;
     void takeRegister(const Reply& reply) noexcept;
     void afterMailbox() noexcept;
     void endStateStep() noexcept;
-    void endObjectStep() noexcept;
+    void startObjectStep(const ObjectStep& step) noexcept;
+    void endObjectStep(const ObjectStep& step) noexcept;
     void stepDone() noexcept;
     void fail(const ScriptFailure& failure) noexcept;
     [[nodiscard]] std::uint32_t whyNoObjects() const noexcept;
@@ -133,6 +135,7 @@ private:
     bool statusWanted_{false};
     std::uint8_t statusTries_{0};
     bool differenceWanted_{false};
+    std::uint8_t differenceTries_{0};
     bool userRequest_{false};  ///< the pending SDO is of the user, not of the script
     core::ObjectReply userReply_{};
 };

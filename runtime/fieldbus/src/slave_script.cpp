@@ -196,18 +196,6 @@ Script syncModeSteps(const SlaveParams& slave) {
 // --- registers
 // -----------------------------------------------------------------------------------------
 
-Script mailboxSteps(const SlaveParams& slave) {
-    Script script;
-    const std::optional<MailboxPlace> place = mailboxPlace(slave);
-    if (!place) return script;
-    const auto& managers = deviceOf(slave).syncManagers;
-    script.emplace_back(syncManagerStep(place->outManager, place->outStart, place->outSize,
-                                        managers[place->outManager].control, true));
-    script.emplace_back(syncManagerStep(place->inManager, place->inStart, place->inSize,
-                                        managers[place->inManager].control, true));
-    return script;
-}
-
 Script processDataSteps(const SlaveParams& slave, const SlavePlace& place,
                         const ProcessGroup& group) {
     Script script;
@@ -313,7 +301,7 @@ Script unmapSteps(const SlaveParams& slave) {
 }
 
 Script preOpScript(const SlaveParams& slave, const SlavePlace& place, const ProcessGroup& group) {
-    Script script = mailboxSteps(slave);
+    Script script = makeMailboxScript(slave);
     // The device's own processor may need its EEPROM from here on.
     script.emplace_back(RegisterStep{reg::EepromConfiguration, {1}, false});
     script.emplace_back(StateStep{AlState::PreOp, deviceOf(slave).timeouts.preOp});
@@ -336,6 +324,18 @@ std::optional<MailboxPlace> mailboxPlace(const SlaveParams& slave) {
     const auto& inBox = device.syncManagers[*in];
     return MailboxPlace{
         *out, *in, outBox.start, outBox.defaultSize, inBox.start, inBox.defaultSize};
+}
+
+Script makeMailboxScript(const SlaveParams& slave) {
+    Script script;
+    const std::optional<MailboxPlace> place = mailboxPlace(slave);
+    if (!place) return script;
+    const auto& managers = deviceOf(slave).syncManagers;
+    script.emplace_back(syncManagerStep(place->outManager, place->outStart, place->outSize,
+                                        managers[place->outManager].control, true));
+    script.emplace_back(syncManagerStep(place->inManager, place->inStart, place->inSize,
+                                        managers[place->inManager].control, true));
+    return script;
 }
 
 core::Duration sync0Cycle(const NetworkParams& network, const SlaveParams& slave) {

@@ -50,6 +50,9 @@ struct SlaveScripts {
 [[nodiscard]] SlaveScripts makeScripts(const NetworkParams& network, std::size_t slave,
                                        const LogicalLayout& layout);
 
+/// Sets up the mailbox of a device in INIT. Empty when it has none.
+[[nodiscard]] Script makeMailboxScript(const SlaveParams& slave);
+
 /// Objects that make the device use the configured PDOs (ETG.1000.6 5.6.7.4): assignments emptied,
 /// mappings emptied, entries, counts, assignments. Empty when the device's defaults are used.
 [[nodiscard]] Script makePdoScript(const SlaveParams& slave);

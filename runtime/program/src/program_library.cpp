@@ -74,8 +74,7 @@ LoadedProgram loadProgram(const std::filesystem::path& library) {
     if (std::string error = refusedEntry(*entry); !error.empty()) {
         return {nullptr, fmt::format("program library '{}' is refused: {}", library.string(), error)};
     }
-    // The deleter holds the library, so its code outlives the program.
-    return {ProgramPtr{entry->create(), [handle, destroy = entry->destroy](Program* p) { destroy(p); }}, {}};
+    return {ProgramPtr{entry->create(), ProgramDeleter{handle, entry->destroy}}, {}};
 }
 
 }  // namespace takt::program

@@ -48,6 +48,7 @@ void EventQueue::siftDown(std::size_t at) noexcept {
 
 void EventQueue::schedule(std::size_t device, EventKind kind, core::TrueTime time) noexcept {
     const Slot slot = slotOf(device, kind);
+    if (slot == handled_) handled_ = NotPending;
     if (position_[slot] == NotPending) {
         time_[slot] = time;
         heap_.push_back(slot);  // never allocates: reserved for every slot there is
@@ -84,14 +85,19 @@ void EventQueue::cancel(std::size_t device, EventKind kind) noexcept {
 }
 
 bool EventQueue::pending(std::size_t device, EventKind kind) const noexcept {
-    return position_[slotOf(device, kind)] != NotPending;
+    const Slot slot = slotOf(device, kind);
+    return slot != handled_ && position_[slot] != NotPending;
 }
 
-EventQueue::Event EventQueue::pop() noexcept {
+EventQueue::Event EventQueue::begin() noexcept {
     assert(!heap_.empty());
-    const Slot slot = heap_[0];
-    removeAt(0);
-    return {slot / EventKinds, static_cast<EventKind>(slot % EventKinds), time_[slot]};
+    handled_ = heap_[0];
+    return {handled_ / EventKinds, static_cast<EventKind>(handled_ % EventKinds), time_[handled_]};
+}
+
+void EventQueue::done() noexcept {
+    if (handled_ != NotPending && position_[handled_] != NotPending) removeAt(position_[handled_]);
+    handled_ = NotPending;
 }
 
 }  // namespace takt::twin

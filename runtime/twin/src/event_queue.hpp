@@ -32,8 +32,10 @@ public:
         EventKind kind;
         core::TrueTime time;
     };
-    /// rt. Takes the next event out. \pre one is pending
-    Event pop() noexcept;
+    /// rt. The next event. It stays in its place while it is handled, so that handling it may just
+    /// move it to its next time; `done` takes it out if that did not happen. \pre one is pending
+    Event begin() noexcept;
+    void done() noexcept;
 
 private:
     using Slot = std::uint32_t;
@@ -47,6 +49,7 @@ private:
     void siftDown(std::size_t at) noexcept;
     void removeAt(std::size_t at) noexcept;
 
+    Slot handled_{NotPending};          ///< between begin and done, until it is scheduled anew
     std::vector<core::TrueTime> time_;  ///< of each slot
     std::vector<Slot> position_;        ///< of each slot in the heap
     std::vector<Slot> heap_;

@@ -26,12 +26,4 @@ FmmuList decodeFmmus(std::span<const std::uint8_t> registers, std::size_t count)
     return list;
 }
 
-Overlap overlapOf(const Fmmu& fmmu, std::uint32_t logical, std::size_t length) noexcept {
-    const std::uint64_t first = std::max<std::uint64_t>(fmmu.logical, logical);
-    const std::uint64_t end = std::min<std::uint64_t>(std::uint64_t{fmmu.logical} + fmmu.length,
-                                                      std::uint64_t{logical} + length);
-    if (first >= end) return {};
-    return {first - logical, first - fmmu.logical, end - first};
-}
-
 }  // namespace takt::twin

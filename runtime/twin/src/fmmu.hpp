@@ -38,7 +38,15 @@ struct Overlap {
     std::size_t length{0};  ///< 0 = none
 };
 
-[[nodiscard]] Overlap overlapOf(const Fmmu& fmmu, std::uint32_t logical,
-                                std::size_t length) noexcept;
+/// rt.
+[[nodiscard]] inline Overlap overlapOf(const Fmmu& fmmu, std::uint32_t logical,
+                                       std::size_t length) noexcept {
+    const std::uint64_t unitEnd = std::uint64_t{fmmu.logical} + fmmu.length;
+    const std::uint64_t datagramEnd = std::uint64_t{logical} + length;
+    if (logical >= unitEnd || fmmu.logical >= datagramEnd) return {};
+    const std::uint32_t first = fmmu.logical > logical ? fmmu.logical : logical;
+    const std::uint64_t end = unitEnd < datagramEnd ? unitEnd : datagramEnd;
+    return {first - logical, first - fmmu.logical, end - first};
+}
 
 }  // namespace takt::twin

@@ -40,7 +40,20 @@ private:
         std::int64_t whole;     ///< ns
         std::int64_t fraction;  ///< 2^-40 ns
     };
-    [[nodiscard]] Amount advance(std::int64_t elapsed) const noexcept;
+    static constexpr int HalfBits = ClockRateBits / 2;
+    static constexpr std::int64_t HalfMask = (std::int64_t{1} << HalfBits) - 1;
+
+    [[nodiscard]] Amount advance(std::int64_t elapsed) const noexcept {
+        // elapsed · rate has up to 80 bits: multiply the halves of `elapsed`, add them 20 bits
+        // apart.
+        const ClockRate rate = oscillator_ + trim_;
+        const std::int64_t high = (elapsed >> HalfBits) * rate;
+        const std::int64_t slewed = elapsed < slewTime_ ? elapsed : slewTime_;
+        const std::int64_t low = (elapsed & HalfMask) * rate + fraction_ + slewed * slew_;
+        const std::int64_t middle = high + (low >> HalfBits);
+        return {elapsed + (middle >> HalfBits),
+                ((middle & HalfMask) << HalfBits) | (low & HalfMask)};
+    }
 
     ClockRate oscillator_;
     ClockRate trim_{0};

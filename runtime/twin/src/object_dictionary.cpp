@@ -76,9 +76,11 @@ ObjectDictionary::ObjectDictionary(const wire::DeviceDescription& device) {
 }
 
 DictionaryEntry& ObjectDictionary::add(DictionaryEntry entry, std::size_t size) {
-    entry.offset = static_cast<std::uint32_t>(values_.size());
+    entry.offset = static_cast<std::uint32_t>(used_);
     entry.size = static_cast<std::uint32_t>(size);
-    values_.resize(values_.size() + size, 0);
+    // A number is always loaded and stored as eight bytes, so eight more lie behind the last value.
+    used_ += size;
+    values_.resize(used_ + sizeof(std::uint64_t), 0);
     const auto at = std::lower_bound(entries_.begin(), entries_.end(), entry,
                                      [](const DictionaryEntry& a, const DictionaryEntry& b) {
                                          return precedes(a, b.index, b.subindex);
@@ -91,12 +93,11 @@ ObjectRef ObjectDictionary::ensure(const DictionaryEntry& wanted, std::int64_t v
     if (found == nullptr) {
         DictionaryEntry entry = wanted;
         entry.bits = static_cast<std::uint16_t>(8 * sizeOf(wanted.type));
-        found = &add(entry, sizeOf(wanted.type));
-        const ObjectRef ref{found->offset, static_cast<std::uint8_t>(found->size)};
+        const ObjectRef ref = refOf(add(entry, sizeOf(wanted.type)));
         set(ref, value);
         return ref;
     }
-    return {found->offset, static_cast<std::uint8_t>(std::min<std::uint32_t>(found->size, 8))};
+    return refOf(*found);
 }
 
 ObjectRef ObjectDictionary::internal(std::uint16_t index, std::uint8_t subindex,
@@ -138,28 +139,6 @@ bool ObjectDictionary::contains(std::uint16_t index) const noexcept {
     return std::any_of(entries_.begin(), entries_.end(), [index](const DictionaryEntry& entry) {
         return entry.index == index && !entry.hidden;
     });
-}
-
-std::uint64_t ObjectDictionary::getUnsigned(ObjectRef ref) const noexcept {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < ref.size; ++i) {
-        value |= std::uint64_t{values_[ref.offset + i]} << (8 * i);
-    }
-    return value;
-}
-
-std::int64_t ObjectDictionary::getSigned(ObjectRef ref) const noexcept {
-    const std::uint64_t value = getUnsigned(ref);
-    if (ref.size == 0 || ref.size >= 8) return static_cast<std::int64_t>(value);
-    const std::uint64_t sign = std::uint64_t{1} << (8 * ref.size - 1);
-    return static_cast<std::int64_t>((value ^ sign) - sign);
-}
-
-void ObjectDictionary::set(ObjectRef ref, std::int64_t value) noexcept {
-    for (std::size_t i = 0; i < ref.size; ++i) {
-        values_[ref.offset + i] =
-            static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i));
-    }
 }
 
 void ObjectDictionary::allowMapping(std::uint16_t index, std::uint8_t subindex, bool toDevice) {

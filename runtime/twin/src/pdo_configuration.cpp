@@ -104,15 +104,14 @@ bool PdoConfiguration::governs(std::uint16_t index) noexcept {
 std::uint32_t PdoConfiguration::number(std::uint16_t index, std::uint8_t subindex) const noexcept {
     const DictionaryEntry* entry = dictionary_.find(index, subindex);
     if (entry == nullptr) return 0;
-    return static_cast<std::uint32_t>(
-        dictionary_.getUnsigned({entry->offset, static_cast<std::uint8_t>(entry->size)}));
+    return static_cast<std::uint32_t>(dictionary_.getUnsigned(ObjectDictionary::refOf(*entry)));
 }
 
 void PdoConfiguration::store(std::uint16_t index, std::uint8_t subindex,
                              std::uint32_t value) noexcept {
     const DictionaryEntry* entry = dictionary_.find(index, subindex);
     if (entry == nullptr) return;
-    dictionary_.set({entry->offset, static_cast<std::uint8_t>(entry->size)}, value);
+    dictionary_.set(ObjectDictionary::refOf(*entry), value);
 }
 
 std::uint32_t PdoConfiguration::write(std::uint16_t index, std::uint8_t subindex,
@@ -170,9 +169,11 @@ bool PdoConfiguration::append(Direction& list, std::uint32_t mapping) noexcept {
             dictionary_.find(mappedIndex(mapping), mappedSubindex(mapping));
         if (entry == nullptr || bits == 0 || bits > 32) return false;
         if (list.entries.size() == list.entries.capacity()) return false;
-        const auto size = static_cast<std::uint8_t>(std::min<std::uint32_t>(entry->size, 8));
-        list.entries.push_back(
-            {{static_cast<std::uint32_t>(list.bits), bits}, {entry->offset, size}});
+        const ObjectRef object = ObjectDictionary::refOf(*entry);
+        const bool whole = list.bits % 8 == 0 && bits == object.size * 8;
+        list.entries.push_back({{static_cast<std::uint32_t>(list.bits), bits},
+                                object,
+                                whole ? std::uint32_t{object.size} : 0U});
     }
     list.bits += bits;
     return list.bits <= LargestProcessData * 8;
@@ -202,15 +203,27 @@ std::size_t PdoConfiguration::size(PdoDirection direction) const noexcept {
 }
 
 void PdoConfiguration::takeOutputs(std::span<const std::uint8_t> data) noexcept {
+    const auto values = dictionary_.values();
     for (const Mapped& mapped : of(PdoDirection::ToDevice).entries) {
-        dictionary_.set(mapped.object, core::readUnsigned(data, mapped.slot));
+        if (mapped.wholeBytes == 0) {
+            dictionary_.set(mapped.object, core::readUnsigned(data, mapped.slot));
+            continue;
+        }
+        const std::size_t at = mapped.slot.bitOffset / 8;
+        std::copy_n(&data[at], mapped.wholeBytes, &values[mapped.object.offset]);
     }
 }
 
 void PdoConfiguration::putInputs(std::span<std::uint8_t> data) const noexcept {
+    const auto values = dictionary_.values();
     for (const Mapped& mapped : of(PdoDirection::FromDevice).entries) {
-        core::write(data, mapped.slot,
-                    static_cast<std::uint32_t>(dictionary_.getUnsigned(mapped.object)));
+        if (mapped.wholeBytes == 0) {
+            core::write(data, mapped.slot,
+                        static_cast<std::uint32_t>(dictionary_.getUnsigned(mapped.object)));
+            continue;
+        }
+        const std::size_t at = mapped.slot.bitOffset / 8;
+        std::copy_n(&values[mapped.object.offset], mapped.wholeBytes, &data[at]);
     }
 }
 

@@ -42,6 +42,7 @@ private:
     struct Mapped {
         core::PdoSlot slot;
         ObjectRef object;
+        std::uint32_t wholeBytes{0};  ///< what can be copied as it is; 0: bit by bit
     };
     struct Direction {
         std::vector<Mapped> entries;  ///< capacity reserved at construction

@@ -150,6 +150,14 @@ void Segment::run(core::TrueTime until, bool stopAtArrival) noexcept {
     now_ = std::max(now_, until);
 }
 
+core::TrueTime Segment::lastReturn() const noexcept {
+    core::TrueTime last = now_;
+    for (const Journey& journey : journeys_) {
+        last = std::max(last, journey.start + roundTrip_ + journey.length);
+    }
+    return last;
+}
+
 void Segment::step(std::size_t which) noexcept {
     Journey& journey = journeys_[which];
     const std::size_t count = devices_.size();
@@ -192,13 +200,14 @@ void Segment::finish(std::size_t which) noexcept {
 }
 
 void Segment::fire() noexcept {
-    const EventQueue::Event event = events_.pop();
+    const EventQueue::Event event = events_.begin();
     SimulatedDevice& device = *devices_[event.device];
     if (event.kind == EventKind::Sync0) {
         device.controller.dc()->fireSync0(now_);
         if (sync0Observer_) sync0Observer_(event.device, now_);
     }
     device.application.onEvent(event.kind, now_);
+    events_.done();
 }
 
 core::TrueTime Segment::take(wire::Frame& to) noexcept {

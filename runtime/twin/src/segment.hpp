@@ -45,6 +45,9 @@ public:
     /// rt. Lets the world run until `until`. `stopAtArrival`: or until a frame has come back.
     void run(core::TrueTime until, bool stopAtArrival) noexcept;
 
+    /// rt. When the last of the frames under way will have come back; now when there is none.
+    [[nodiscard]] core::TrueTime lastReturn() const noexcept;
+
     /// A frame that has come back completely.
     struct Arrival {
         std::size_t slot{0};

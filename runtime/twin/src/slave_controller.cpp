@@ -197,28 +197,28 @@ void SlaveController::processLogical(Datagram& datagram, bool read, bool write,
                                      core::TrueTime now) noexcept {
     bool didRead = false;
     bool didWrite = false;
-    bool kept = false;
-    const std::span<std::uint8_t> arrived{scratch_.data(), datagram.data.size()};
+    core::FixedVector<Overlap, MaxFmmus> parts;
     for (const Fmmu& fmmu : fmmus_) {
         const Overlap part = overlapOf(fmmu, datagram.logical, datagram.data.size());
-        if (part.length == 0) continue;
-        if (write && fmmu.write) {
-            if (read && !kept) {  // a read unit may replace bytes that are still to be written
-                std::copy(datagram.data.begin(), datagram.data.end(), arrived.begin());
-                kept = true;
-            }
-            if (!read) didWrite |= writeMapped(fmmu, part, datagram.data, now);
+        static_cast<void>(parts.push(part));
+        if (part.length == 0 || !write || !fmmu.write) continue;
+        if (!read) {
+            didWrite |= writeMapped(fmmu, part, datagram.data, now);
+            continue;
         }
+        // A unit that reads may replace bytes that are still to be written: keep them as they
+        // arrived.
+        const auto from = datagram.data.begin() + static_cast<std::ptrdiff_t>(part.datagramOffset);
+        std::copy_n(from, part.length,
+                    scratch_.begin() + static_cast<std::ptrdiff_t>(part.datagramOffset));
     }
-    for (const Fmmu& fmmu : fmmus_) {
-        if (!read || !fmmu.read) continue;
-        const Overlap part = overlapOf(fmmu, datagram.logical, datagram.data.size());
-        if (part.length != 0) didRead |= readMapped(fmmu, part, datagram.data, now);
+    for (std::size_t i = 0; read && i < fmmus_.size(); ++i) {
+        if (!fmmus_[i].read || parts[i].length == 0) continue;
+        didRead |= readMapped(fmmus_[i], parts[i], datagram.data, now);
     }
-    for (const Fmmu& fmmu : fmmus_) {
-        if (!kept || !fmmu.write) continue;
-        const Overlap part = overlapOf(fmmu, datagram.logical, datagram.data.size());
-        if (part.length != 0) didWrite |= writeMapped(fmmu, part, arrived, now);
+    for (std::size_t i = 0; read && write && i < fmmus_.size(); ++i) {
+        if (!fmmus_[i].write || parts[i].length == 0) continue;
+        didWrite |= writeMapped(fmmus_[i], parts[i], {scratch_.data(), datagram.data.size()}, now);
     }
     // Once per direction however many units matched; LRW counts a write twice.
     const int counted = (didRead ? 1 : 0) + (didWrite ? (read ? 2 : 1) : 0);

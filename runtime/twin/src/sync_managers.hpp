@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -103,9 +104,11 @@ private:
 /// rt. Copies, or ORs for broadcast reads, `from` into `to`.
 inline void transfer(std::span<std::uint8_t> to, std::span<const std::uint8_t> from,
                      bool combine) noexcept {
-    for (std::size_t i = 0; i < to.size(); ++i) {
-        to[i] = combine ? static_cast<std::uint8_t>(to[i] | from[i]) : from[i];
+    if (!combine) {
+        std::copy_n(from.begin(), to.size(), to.begin());
+        return;
     }
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = static_cast<std::uint8_t>(to[i] | from[i]);
 }
 
 }  // namespace takt::twin

@@ -105,6 +105,27 @@ core::ClockSource& Twin::clock() noexcept {
 core::TrueTime Twin::trueTime() const noexcept {
     return world_->segment.now();
 }
+bool Twin::arrive(const wire::Frame& frame, core::TrueTime arrival) noexcept {
+    advance(arrival);
+    return world_->segment.launch(frame);
+}
+
+std::size_t Twin::comeBack(std::span<wire::Frame> slots) noexcept {
+    Segment& segment = world_->segment;
+    std::size_t filled = 0;
+    while (filled < slots.size()) {
+        // Not farther than the last frame: what happens after it waits for the next one.
+        segment.run(segment.lastReturn(), true);
+        if (!segment.hasArrival()) break;
+        segment.take(slots[filled++]);
+    }
+    return filled;
+}
+
+void Twin::advance(core::TrueTime until) noexcept {
+    if (until > world_->segment.now()) world_->segment.run(until, false);
+}
+
 std::size_t Twin::deviceCount() const noexcept {
     return world_->segment.deviceCount();
 }

@@ -88,6 +88,16 @@ FrameWriter::FrameWriter(Frame& frame) noexcept
     frame_.size = end_;
 }
 
+FrameWriter::FrameWriter(Frame& frame, DatagramPlace last) noexcept
+    : frame_{frame},
+      end_{static_cast<std::uint16_t>(last.offset + DatagramOverhead + last.length)},
+      last_{last.offset} {
+    const std::size_t at = last_ + LengthOffset;
+    const std::span<std::uint8_t> bytes{frame_.bytes};
+    store16(bytes, at, static_cast<std::uint16_t>(load16(bytes, at) & ~MoreBit));
+    frame_.size = end_;
+}
+
 std::size_t FrameWriter::room() const noexcept {
     const std::size_t used = end_ + DatagramOverhead;
     return used >= MaxFrameSize ? 0 : MaxFrameSize - used;

@@ -34,8 +34,9 @@ struct DriveInputs {
     std::uint16_t errorCode{0};  ///< 603Fh
     std::uint32_t digitalInputs{0};
     std::int8_t modeDisplay{0};
-    bool seen{false};   ///< inputs were valid at least once
-    bool fresh{false};  ///< inputs are of this cycle
+    std::uint32_t bridged{0};  ///< cycles without inputs just before this one
+    bool seen{false};          ///< inputs were valid at least once
+    bool fresh{false};         ///< inputs are of this cycle
 };
 
 /// A CiA 402 drive (IEC 61800-7-201) behind a process image: decoding, power sequence, fault reset,

@@ -55,15 +55,26 @@ public:
 private:
     friend struct AxisTestAccess;
 
+    /// Where the shortest stop ends, and how far out it goes before.
+    struct Stop {
+        core::Position end;
+        core::Position lowest;
+        core::Position highest;
+    };
+
+    [[nodiscard]] bool turnsOnTheWay(const Dynamics& dynamics, double wanted,
+                                     std::optional<core::Position> target) const noexcept;
     [[nodiscard]] ErrorId beginPosition(core::Position target, const Dynamics& dynamics) noexcept;
     [[nodiscard]] ErrorId beginVelocity(const Dynamics& dynamics) noexcept;
     [[nodiscard]] ErrorId beginBraking(const Dynamics& dynamics) noexcept;
     [[nodiscard]] core::Position moduloTarget(const Command& command,
                                               const Dynamics& dynamics) noexcept;
     [[nodiscard]] Dynamics holdingVelocity(const Dynamics& dynamics) const noexcept;
-    [[nodiscard]] std::optional<core::Position> stopFrom(const planner::State& from,
-                                                         const Dynamics& dynamics) const noexcept;
-    [[nodiscard]] std::optional<core::Position> limitPassed(core::Position stopsAt) const noexcept;
+    [[nodiscard]] std::optional<Stop> stopFrom(const planner::State& from,
+                                               const Dynamics& dynamics) const noexcept;
+    /// The profile passes a software limit, and goes farther out than the axis is.
+    [[nodiscard]] bool leavesUpward(const planner::Profile& profile) const noexcept;
+    [[nodiscard]] bool leavesDownward(const planner::Profile& profile) const noexcept;
     void guardVelocity(const Dynamics& dynamics) noexcept;
     [[nodiscard]] bool passesGuard(const planner::State& state) const noexcept;
     void turnToLimit() noexcept;

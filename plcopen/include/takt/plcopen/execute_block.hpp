@@ -25,9 +25,18 @@ protected:
     ExecuteBlock() = default;
     ~ExecuteBlock() = default;
 
-    /// rt. One call of the block. `request` is what a rising edge commands.
+    /// rt. One call of the block. `request()` gives what a rising edge commands.
     /// \return where the command stands as this call shows it; Unknown = nothing to show
-    axis::CommandPhase run(axis::AxisRef axis, const axis::Command& request) noexcept;
+    template <typename Request>
+    axis::CommandPhase run(const axis::AxisRef& axis, Request&& request) noexcept {
+        const bool edge = Execute && !lastExecute_;
+        if (edge) {
+            start(axis, request());
+        } else if (pending_) {
+            follow();
+        }
+        return show(edge);
+    }
 
     [[nodiscard]] axis::CommandId command() const noexcept { return id_; }
     /// Execute was TRUE in the call before.
@@ -36,12 +45,14 @@ protected:
 private:
     void start(const axis::AxisRef& axis, const axis::Command& request) noexcept;
     void follow() noexcept;
+    axis::CommandPhase show(bool edge) noexcept;
 
     axis::AxisRef axis_{};
     axis::CommandId id_{axis::CommandId::None};
     axis::CommandStatus status_{};
     bool lastExecute_{false};
-    bool shown_{false};  ///< the end has been shown in a call
+    bool pending_{false};  ///< accepted and not ended
+    bool shown_{false};    ///< the end has been shown in a call
 };
 
 /// An Execute-type block that moves the axis.
@@ -55,7 +66,13 @@ protected:
     ~MotionBlock() = default;
 
     /// rt. As ExecuteBlock::run, and sets Active and CommandAborted.
-    axis::CommandPhase runMotion(axis::AxisRef axis, const axis::Command& request) noexcept;
+    template <typename Request>
+    axis::CommandPhase runMotion(const axis::AxisRef& axis, Request&& request) noexcept {
+        const axis::CommandPhase phase = run(axis, request);
+        Active = phase == axis::CommandPhase::Active;
+        CommandAborted = phase == axis::CommandPhase::Aborted;
+        return phase;
+    }
 };
 
 }  // namespace takt::plcopen

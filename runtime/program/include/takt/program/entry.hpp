@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include <takt/program/program.hpp>
+#include <takt/program/version.hpp>
 
 namespace takt::program {
 
@@ -20,7 +21,6 @@ struct ProgramEntry {
     void (*destroy)(Program*);
 };
 
-inline constexpr const char* Version = "0.1.0";
 inline constexpr const char* EntrySymbol = "taktProgramEntry";
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -48,7 +48,7 @@ inline constexpr const char* CompilerTag = "gcc";
             takt::program::Version,                                                               \
             takt::program::CompilerTag,                                                           \
             takt::program::SanitizerTag,                                                          \
-            []() -> takt::program::Program* { return new Class; },                                \
+            []() -> takt::program::Program* { return new (Class); },                              \
             [](takt::program::Program* program) { delete program; }};                             \
         return &entry;                                                                            \
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -9,8 +8,16 @@
 
 namespace takt::program {
 
+/// Ends a program where it was made, and holds the library with its code until then.
+struct ProgramDeleter {
+    std::shared_ptr<void> library;  ///< null: linked in
+    void (*destroy)(Program*){nullptr};
+
+    void operator()(Program* program) const { destroy(program); }
+};
+
 /// A program and what keeps its code in memory.
-using ProgramPtr = std::unique_ptr<Program, std::function<void(Program*)>>;
+using ProgramPtr = std::unique_ptr<Program, ProgramDeleter>;
 
 /// A program, or the reason why there is none, in words that say what to do.
 struct LoadedProgram {

@@ -30,7 +30,7 @@ public:
     [[nodiscard]] bool locked() const noexcept { return locked_; }
     /// Times the lock was lost after it had been found.
     [[nodiscard]] std::uint32_t relocks() const noexcept { return relocks_; }
-    /// Learnt rate of the controller's clock against the reference, in parts per million.
+    /// Learnt rate of the controller's clock against the reference, in parts per million; positive: fast.
     [[nodiscard]] double driftPpm() const noexcept;
     [[nodiscard]] core::Duration lastError() const noexcept { return lastError_; }
 

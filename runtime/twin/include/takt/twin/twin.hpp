@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <takt/core/cia402.hpp>
 #include <takt/core/clock_source.hpp>
 #include <takt/core/time.hpp>
@@ -56,6 +57,17 @@ public:
     [[nodiscard]] core::ClockSource& clock() noexcept;
     [[nodiscard]] core::TrueTime trueTime() const noexcept;
     [[nodiscard]] std::size_t deviceCount() const noexcept;
+
+    // The door for frames of another process, whose arrival times are given: `takt sim`. Clock and
+    // link above are not used with it.
+
+    /// A frame reaches the first device at `arrival`, or now when the world is past it. Lets the
+    /// world run until then. \return false when too many frames are under way; it is lost
+    bool arrive(const wire::Frame& frame, core::TrueTime arrival) noexcept;
+    /// Lets the frames under way come back. \return how many slots were filled, in order of return
+    std::size_t comeBack(std::span<wire::Frame> slots) noexcept;
+    /// Lets the world run until `until` without a frame: watchdogs end, drives stop.
+    void advance(core::TrueTime until) noexcept;
 
     /// Calls `observer` at every SYNC0 of every device, for tests.
     void onSync0(std::function<void(std::size_t device, core::TrueTime)> observer);

@@ -42,6 +42,17 @@ struct TwinDeviceParams {
     MechanicsParams mechanics;
 };
 
+/// Frames that get lost between the controller and the first device: those of `cycles` cycles on end.
+struct LostFramesParams {
+    std::uint64_t cycle{0};   ///< the first one, counted from the start of the cyclic task
+    std::uint64_t cycles{1};
+};
+
+/// What goes wrong on the simulated machine and when.
+struct FaultParams {
+    std::vector<LostFramesParams> lostFrames;  ///< in ascending order of cycles
+};
+
 struct TwinParams {
     std::vector<TwinDeviceParams> devices;   ///< in frame order, one for each slave of the network
     double hostPpm{0.0};                     ///< of the controller's own clock

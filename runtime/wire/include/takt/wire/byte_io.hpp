@@ -1,30 +1,65 @@
 #pragma once
 
+#include <bit>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 namespace takt::wire {
 
-// rt. Little-endian loads and stores, byte by byte: no alignment, no packed structs.
+namespace detail {
+
+/// A copy of bytes needs no alignment and becomes one instruction; byte by byte it does not with
+/// every compiler, and every frame passes here.
+template <typename Number>
+[[nodiscard]] inline Number loadLittleEndian(const std::uint8_t* bytes) noexcept {
+    Number value{0};
+    if constexpr (std::endian::native == std::endian::little) {
+        std::memcpy(&value, bytes, sizeof value);
+    } else {
+        for (std::size_t i = 0; i < sizeof value; ++i) {
+            value = static_cast<Number>(value | (static_cast<Number>(bytes[i]) << (8 * i)));
+        }
+    }
+    return value;
+}
+
+template <typename Number>
+inline void storeLittleEndian(std::uint8_t* bytes, Number value) noexcept {
+    if constexpr (std::endian::native == std::endian::little) {
+        std::memcpy(bytes, &value, sizeof value);
+    } else {
+        for (std::size_t i = 0; i < sizeof value; ++i) {
+            bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
+        }
+    }
+}
+
+}  // namespace detail
+
+// rt. Little-endian loads and stores at any address: no alignment, no packed structs.
 // \pre offset + width <= bytes.size()
 
 [[nodiscard]] inline std::uint8_t load8(std::span<const std::uint8_t> b, std::size_t at) noexcept {
     assert(at + 1 <= b.size());
     return b[at];
 }
-[[nodiscard]] inline std::uint16_t load16(std::span<const std::uint8_t> b, std::size_t at) noexcept {
+[[nodiscard]] inline std::uint16_t load16(std::span<const std::uint8_t> b,
+                                          std::size_t at) noexcept {
     assert(at + 2 <= b.size());
-    return static_cast<std::uint16_t>(b[at] | (b[at + 1] << 8));
+    return detail::loadLittleEndian<std::uint16_t>(b.data() + at);
 }
-[[nodiscard]] inline std::uint32_t load32(std::span<const std::uint8_t> b, std::size_t at) noexcept {
+[[nodiscard]] inline std::uint32_t load32(std::span<const std::uint8_t> b,
+                                          std::size_t at) noexcept {
     assert(at + 4 <= b.size());
-    return std::uint32_t{b[at]} | (std::uint32_t{b[at + 1]} << 8) |
-           (std::uint32_t{b[at + 2]} << 16) | (std::uint32_t{b[at + 3]} << 24);
+    return detail::loadLittleEndian<std::uint32_t>(b.data() + at);
 }
-[[nodiscard]] inline std::uint64_t load64(std::span<const std::uint8_t> b, std::size_t at) noexcept {
-    return std::uint64_t{load32(b, at)} | (std::uint64_t{load32(b, at + 4)} << 32);
+[[nodiscard]] inline std::uint64_t load64(std::span<const std::uint8_t> b,
+                                          std::size_t at) noexcept {
+    assert(at + 8 <= b.size());
+    return detail::loadLittleEndian<std::uint64_t>(b.data() + at);
 }
 
 inline void store8(std::span<std::uint8_t> b, std::size_t at, std::uint8_t v) noexcept {
@@ -33,16 +68,15 @@ inline void store8(std::span<std::uint8_t> b, std::size_t at, std::uint8_t v) no
 }
 inline void store16(std::span<std::uint8_t> b, std::size_t at, std::uint16_t v) noexcept {
     assert(at + 2 <= b.size());
-    b[at] = static_cast<std::uint8_t>(v);
-    b[at + 1] = static_cast<std::uint8_t>(v >> 8);
+    detail::storeLittleEndian(b.data() + at, v);
 }
 inline void store32(std::span<std::uint8_t> b, std::size_t at, std::uint32_t v) noexcept {
     assert(at + 4 <= b.size());
-    for (std::size_t i = 0; i < 4; ++i) b[at + i] = static_cast<std::uint8_t>(v >> (8 * i));
+    detail::storeLittleEndian(b.data() + at, v);
 }
 inline void store64(std::span<std::uint8_t> b, std::size_t at, std::uint64_t v) noexcept {
-    store32(b, at, static_cast<std::uint32_t>(v));
-    store32(b, at + 4, static_cast<std::uint32_t>(v >> 32));
+    assert(at + 8 <= b.size());
+    detail::storeLittleEndian(b.data() + at, v);
 }
 
 }  // namespace takt::wire

@@ -106,6 +106,8 @@ class FrameWriter {
 public:
     /// rt. Starts an empty frame: broadcast destination, a locally chosen source with SourceSeenBit clear.
     explicit FrameWriter(Frame& frame) noexcept;
+    /// rt. Goes on behind `last`, a datagram of a frame that was finished before; what followed is dropped.
+    FrameWriter(Frame& frame, DatagramPlace last) noexcept;
 
     /// rt. Bytes of data that one more datagram may carry.
     [[nodiscard]] std::size_t room() const noexcept;

@@ -1,0 +1,157 @@
+// The part of MachineRun that runs in the cycle's thread, after each cycle and by its rules.
+#include <algorithm>
+
+#include <takt/core/cycle_guard.hpp>
+
+#include "machine_run.hpp"
+#include "run_limits.hpp"
+
+namespace takt::daemon {
+
+using fieldbus::ethercat::NetworkState;
+
+void MachineRun::oneCycle() noexcept {
+    const scheduler::Beat beat = grid_.wait(bus_.clock());
+    cycle_.run(beat, orders_);
+    now_ = beat.number + 1;
+    const core::CycleGuard guard;
+    superviseOverruns(beat);
+    supervise();
+}
+
+void MachineRun::supervise() noexcept {
+    switch (phase_) {
+        case Phase::BringUp: return;
+        case Phase::GoingOp: return superviseGoingOp();
+        case Phase::Operating: return superviseOperating();
+        case Phase::PoweringOff: return supervisePoweringOff();
+        case Phase::LeavingOp: return superviseLeavingOp();
+        case Phase::Over: return;
+    }
+}
+
+void MachineRun::superviseOverruns(const scheduler::Beat& beat) noexcept {
+    const scheduler::OverrunVerdict verdict = overruns_.update(beat.skipped);
+    const bool tell = machine_.scheduler.overruns.policy == scheduler::OverrunPolicy::React;
+    if (tell && beat.skipped > 0 && overruns_.overruns() == 1) note(RunNotice::Kind::CycleMissed, 0, beat.skipped);
+    const bool moving = phase_ == Phase::Operating || phase_ == Phase::PoweringOff;
+    if (!moving || verdict == scheduler::OverrunVerdict::Fine) return;
+    if (verdict == scheduler::OverrunVerdict::DriveStop && !quickStopped_) {
+        fail(ExitCode::MachineFault, RunNotice::Kind::DrivesStopped);
+        quickStopAll();
+    } else if (phase_ == Phase::Operating) {
+        fail(ExitCode::MachineFault, RunNotice::Kind::StoppedOnPath);
+    }
+    if (phase_ == Phase::Operating) endOperation();
+}
+
+void MachineRun::superviseGoingOp() noexcept {
+    const NetworkState state = bus_.master().state();
+    if (state == NetworkState::Op) {
+        note(RunNotice::Kind::ReachedOp);
+        orders_.runPrograms = !options_.manual;
+        orders_.operating = true;
+        return enter(Phase::Operating);
+    }
+    if (state == NetworkState::Failed) {
+        fail(ExitCode::CouldNotRun, RunNotice::Kind::NetworkFailed);
+    } else if (inPhase() > OpTimeout) {
+        fail(ExitCode::CouldNotRun, RunNotice::Kind::OpTimedOut);
+    } else if (stop_.count() == 0) {
+        return;
+    }
+    // What was noted speaks of the network as it is now: house is kept before it goes down further.
+    bus_.master().requestInit();
+    enter(Phase::LeavingOp);
+}
+
+void MachineRun::superviseOperating() noexcept {
+    noteEndedPrograms();
+    noteMachineStop();
+    const bool allEnded = std::all_of(programs_.begin(), programs_.end(),
+                                      [](const ProgramHost& program) { return program.ended(); });
+    const bool timeOver = options_.length && inPhase() >= *options_.length;
+    if ((allEnded && !options_.manual) || timeOver || stop_.count() > 0) endOperation();
+}
+
+/// From now on every axis ramps down and is switched off.
+void MachineRun::endOperation() noexcept {
+    orders_.runPrograms = false;
+    orders_.operating = false;
+    orders_.stopAxes = true;
+    enter(Phase::PoweringOff);
+}
+
+void MachineRun::supervisePoweringOff() noexcept {
+    if (stop_.count() > 1) quickStopAll();
+    const bool allOff = std::all_of(axes_.begin(), axes_.end(),
+                                    [](const axis::Axis& axis) { return axis.isDisabled(); });
+    if (!allOff && inPhase() < StopTimeout) return;
+    if (!allOff && !stopTimedOut_) {
+        stopTimedOut_ = true;
+        for (std::size_t i = 0; i < axes_.size(); ++i) {
+            if (!axes_[i].isDisabled()) fail(ExitCode::StopTimeout, RunNotice::Kind::AxisNotStopped, i);
+        }
+        quickStopAll();
+    }
+    // No drive is left alone in motion as long as it may still stop by itself.
+    if (!allOff && inPhase() < StopTimeout + QuickStopTime) return;
+    bus_.master().requestInit();
+    enter(Phase::LeavingOp);
+}
+
+void MachineRun::quickStopAll() noexcept {
+    if (quickStopped_) return;
+    quickStopped_ = true;
+    for (axis::Axis& axis : axes_) {
+        if (!axis.isDisabled()) axis.quickStop();
+    }
+}
+
+void MachineRun::superviseLeavingOp() noexcept {
+    const NetworkState state = bus_.master().state();
+    if (state == NetworkState::Init || state == NetworkState::Failed) return enter(Phase::Over);
+    if (inPhase() < InitTimeout) return;
+    fail(ExitCode::StopTimeout, RunNotice::Kind::InitTimedOut);
+    enter(Phase::Over);
+}
+
+void MachineRun::enter(Phase phase) noexcept {
+    phase_ = phase;
+    orders_.phase = phase;
+    phaseBegan_ = now_;
+}
+
+void MachineRun::fail(ExitCode code, RunNotice::Kind kind, std::size_t index) noexcept {
+    note(kind, index, overruns_.inRow());
+    if (code_ == ExitCode::Good) code_ = code;
+}
+
+void MachineRun::note(RunNotice::Kind kind, std::size_t index, std::uint64_t number) noexcept {
+    notices_.push({.kind = kind, .index = index, .cycle = now_, .time = inPhase(), .number = number});
+}
+
+void MachineRun::noteEndedPrograms() noexcept {
+    for (std::size_t i = 0; i < programs_.size(); ++i) {
+        const ProgramPhase phase = programs_[i].phase();
+        if (!programs_[i].ended() || noted_[i]) continue;
+        noted_[i] = true;
+        note(RunNotice::Kind::ProgramEnded, i);
+        if (phase == ProgramPhase::Finished || code_ != ExitCode::Good) continue;
+        code_ = phase == ProgramPhase::Abandoned ? ExitCode::ProgramAbandoned : ExitCode::MachineFault;
+    }
+}
+
+void MachineRun::noteMachineStop() noexcept {
+    const MachineStop& stop = control_.machineStop();
+    if (stop.active() == stopNoted_) return;
+    stopNoted_ = stop.active();
+    const auto kind = stopNoted_ ? RunNotice::Kind::MachineStopped : RunNotice::Kind::MachineStopReset;
+    notices_.push({.kind = kind, .cycle = now_, .stop = stop.record()});
+}
+
+core::Duration MachineRun::inPhase() const noexcept {
+    return machine_.network.cycle * static_cast<std::int64_t>(now_ - phaseBegan_);
+}
+
+}  // namespace takt::daemon
