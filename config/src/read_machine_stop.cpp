@@ -68,6 +68,8 @@ void checkMapped(const ElementReader& reader, NetworkPart& network,
         reader.error("", fmt::format("{:04X}h:{:02X} is not among the inputs of slave '{}'", input.index,
                                      input.subindex, input.slave),
                      "a mapped entry", "add it to an input PDO of the slave with <Pdo>");
+    } else if (bits > 32) {
+        reader.error("index", fmt::format("the entry has {} bits", bits), "at most 32 bits");
     } else if (input.bit >= bits) {
         reader.error("bit", fmt::format("the entry has {} bits", bits), fmt::format("0 to {}", bits - 1));
     }

@@ -152,9 +152,9 @@ TEST(MachineStop, ByAProgramHoldsUntilResetAndANewEdgeOfEnable) {
 }
 
 TEST(MachineStop, ByAnInputStopsTheMachineAndCannotBeResetWhileItIsActive) {
-    // Bit 2 of 60FDh is the home switch of X; homing runs onto it.
+    // Bit 2 of 60FDh is the home switch of Z; homing runs onto it.
     const std::string machine = changedMachine(
-        "control_stop_input", "<Program ", "<MachineStop><Input slave=\"z\" index=\"0x60FD\" bit=\"2\" active=\"high\"/></MachineStop>\n  <Program ");
+        "stop_input_machine", "<Program ", "<MachineStop><Input slave=\"z\" index=\"0x60FD\" bit=\"2\" active=\"high\"/></MachineStop>\n  <Program ");
     const Operated run{"stop_input",
                        "200 power-on Z\n300 home Z\n" + heartbeats(350, 4000) + "4000 reset-stop\n4100 power-on Z\n",
                        "5s", machine};

@@ -13,22 +13,22 @@ namespace takt::daemon {
 /// `{"id":7,"do":"inch","axis":"X","distance":0.1,"velocity":5}`
 struct ControlRequest {
     std::uint64_t id{0};  ///< comes back in every reply to it
-    std::string verb;     ///< "status", "events", or an order: "inch", "power-on", …
-    std::string axis;
-    std::string program;
+    std::string verb{};     ///< "status", "events", or an order: "inch", "power-on", …
+    std::string axis{};
+    std::string program{};
     double distance{0.0};
     double velocity{0.0};
     std::uint64_t after{0};  ///< events: those with a higher number
-    std::string who;         ///< how the client calls itself, for "operated by …"
+    std::string who{};         ///< how the client calls itself, for "operated by …"
 };
 
 /// How far a request has come. Orders get Accepted first when they take time, then their end.
 enum class ReplyKind : std::uint8_t { Accepted, Refused, Done, Aborted, Failed };
 
 struct AxisReport {
-    std::string name;
-    std::string unit;
-    std::string state;
+    std::string name{};
+    std::string unit{};
+    std::string state{};
     double set{0.0};
     double actual{0.0};
     double velocity{0.0};
@@ -36,34 +36,34 @@ struct AxisReport {
     bool powered{false};
     bool homed{false};
     bool needsEnableEdge{false};
-    std::string error;   ///< in words; empty = none
-    std::string holder;  ///< program that holds it; empty = none
+    std::string error{};   ///< in words; empty = none
+    std::string holder{};  ///< program that holds it; empty = none
 };
 
 struct WatchReport {
-    std::string name;
+    std::string name{};
     double value{0.0};
 };
 
 struct ProgramReport {
-    std::string name;
-    std::string state;
+    std::string name{};
+    std::string state{};
     std::vector<WatchReport> watches;
 };
 
 struct StatusReport {
-    std::string machine;
+    std::string machine{};
     std::int64_t pid{0};
     std::uint64_t cycle{0};
     double seconds{0.0};
-    std::string phase;
-    std::string network;
+    std::string phase{};
+    std::string network{};
     std::uint64_t framesSent{0};
     std::uint64_t framesLost{0};
     std::uint64_t framesLate{0};
     std::uint64_t workingCounterErrors{0};
-    std::string machineStop;  ///< its cause; empty = not stopped
-    std::string owner;        ///< who operates; empty = nobody
+    std::string machineStop{};  ///< its cause; empty = not stopped
+    std::string owner{};        ///< who operates; empty = nobody
     std::vector<AxisReport> axes;
     std::vector<ProgramReport> programs;
 };
@@ -72,7 +72,7 @@ struct EventReport {
     std::uint64_t number{0};
     std::uint64_t cycle{0};
     double seconds{0.0};
-    std::string text;
+    std::string text{};
 };
 
 struct ControlReply {
