@@ -78,6 +78,8 @@ void MachineControl::afterPrograms(core::CycleNumber cycle, const CycleOrders& o
 void MachineControl::takeWishes(core::CycleNumber cycle) noexcept {
     for (std::size_t i = 0; i < parts_.programs.size(); ++i) {
         if (!parts_.programs[i].atRest()) continue;
+        // A call under way, or one given up, may be writing its wishes now: they count when it comes back.
+        if (!parts_.programs[i].atRest()) continue;
         const auto wishes = parts_.programs[i].machine().takeStopWishes();
         if (wishes.reset && stop_.active()) stop_.reset(parts_.axes);
         if (wishes.stop) stop_.request(StopCause::Program, static_cast<std::uint16_t>(i), cycle);
