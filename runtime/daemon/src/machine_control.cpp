@@ -77,7 +77,6 @@ void MachineControl::afterPrograms(core::CycleNumber cycle, const CycleOrders& o
 
 void MachineControl::takeWishes(core::CycleNumber cycle) noexcept {
     for (std::size_t i = 0; i < parts_.programs.size(); ++i) {
-        if (!parts_.programs[i].atRest()) continue;
         // A call under way, or one given up, may be writing its wishes now: they count when it comes back.
         if (!parts_.programs[i].atRest()) continue;
         const auto wishes = parts_.programs[i].machine().takeStopWishes();
