@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "machine_files.hpp"
 #include "takt_process.hpp"
 
 namespace takt::test {
@@ -11,31 +12,11 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string Gantry = std::string{TAKT_SOURCE_DIR} + "/samples/03_gantry/machine.xml";
-
-std::string programPath(const std::string& name) {
-    return std::string{TAKT_BINARY_DIR} + "/test_programs/" + name + ".so";
-}
-
 /// Runs the gantry's machine with another program.
 ProcessResult runWith(const std::string& program, const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments{"run", Gantry, "--fast", "--program", program};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runTakt(arguments, TAKT_BINARY_DIR);
-}
-
-/// The gantry's machine file with one text replaced, in a folder of its own.
-std::string changedMachine(const std::string& name, const std::string& from, const std::string& to) {
-    std::string text = readFile(Gantry);
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << "the base machine no longer has " << from;
-    if (at != std::string::npos) text.replace(at, from.size(), to);
-    for (std::size_t p = 0; (p = text.find("../devices/", p)) != std::string::npos;) {
-        text.replace(p, 3, std::string{TAKT_SOURCE_DIR} + "/samples/");
-    }
-    const std::string file = freshFolder(name) + "/machine.xml";
-    writeFile(file, text);
-    return file;
 }
 
 TEST(Run, RefusesAProgramLibraryThatIsMissing) {
