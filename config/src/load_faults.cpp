@@ -1,8 +1,7 @@
-#include <takt/config/load_faults.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
-
-#include <fmt/format.h>
+#include <takt/config/load_faults.hpp>
 
 #include "element_reader.hpp"
 #include "xml_document.hpp"
@@ -29,9 +28,10 @@ std::optional<twin::FaultParams> loadFaults(const std::filesystem::path& file,
     const auto document = loadXml(file, MaxMachineFile, diagnostics);
     if (!document) return std::nullopt;
     if (document->root().name() != "Faults") {
-        diagnostics.error({document->file(), document->root().line()},
-                          fmt::format("<{}> is not the root of a fault file", document->root().name()),
-                          "<Faults>");
+        diagnostics.error(
+            {document->file(), document->root().line()},
+            fmt::format("<{}> is not the root of a fault file", document->root().name()),
+            "<Faults>");
         return std::nullopt;
     }
     twin::FaultParams faults;

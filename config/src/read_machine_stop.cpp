@@ -45,7 +45,8 @@ void readPlace(ElementReader& reader, const std::vector<AxisPart>& axes,
 }
 
 /// Bits of an object among a slave's inputs, 0 when it is not mapped.
-unsigned mappedBits(const fieldbus::SlaveParams& slave, std::uint16_t index, std::uint8_t subindex) {
+unsigned mappedBits(const fieldbus::SlaveParams& slave, std::uint16_t index,
+                    std::uint8_t subindex) {
     for (const fieldbus::PdoParams& pdo : slave.inputs) {
         for (const fieldbus::PdoEntryParams& entry : pdo.entries) {
             if (entry.index == index && entry.subindex == subindex) return entry.bits;
@@ -65,13 +66,15 @@ void checkMapped(const ElementReader& reader, NetworkPart& network,
     if (!slave->params.device) return;
     const unsigned bits = mappedBits(slave->params, input.index, input.subindex);
     if (bits == 0) {
-        reader.error("", fmt::format("{:04X}h:{:02X} is not among the inputs of slave '{}'", input.index,
-                                     input.subindex, input.slave),
+        reader.error("",
+                     fmt::format("{:04X}h:{:02X} is not among the inputs of slave '{}'",
+                                 input.index, input.subindex, input.slave),
                      "a mapped entry", "add it to an input PDO of the slave with <Pdo>");
     } else if (bits > 32) {
         reader.error("index", fmt::format("the entry has {} bits", bits), "at most 32 bits");
     } else if (input.bit >= bits) {
-        reader.error("bit", fmt::format("the entry has {} bits", bits), fmt::format("0 to {}", bits - 1));
+        reader.error("bit", fmt::format("the entry has {} bits", bits),
+                     fmt::format("0 to {}", bits - 1));
     }
 }
 
@@ -84,12 +87,15 @@ axis::MachineStopParams readMachineStop(ElementReader reader, NetworkPart& netwo
     stop.time = reader.time("time", Sign::Positive).value_or(stop.time);
     stop.onFault = reader.flag("onFault").value_or(true);
     for (const XmlElement element : reader.children("Input")) {
-        ElementReader item{element, "machine stop input", reader.place().file, reader.diagnostics()};
+        ElementReader item{element, "machine stop input", reader.place().file,
+                           reader.diagnostics()};
         axis::MachineStopInput input;
         input.origin = format(item.place());
         readPlace(item, axes, input);
-        input.bit = static_cast<std::uint8_t>(item.integer("bit", {0, 31}, Presence::Required).value_or(0));
-        input.activeHigh = item.choice<bool>("active", {{"low", false}, {"high", true}}).value_or(false);
+        input.bit =
+            static_cast<std::uint8_t>(item.integer("bit", {0, 31}, Presence::Required).value_or(0));
+        input.activeHigh =
+            item.choice<bool>("active", {{"low", false}, {"high", true}}).value_or(false);
         item.finish();
         checkMapped(item, network, input);
         input.name = fmt::format("{} {:04X}h bit {}", input.slave, input.index, input.bit);

@@ -9,7 +9,8 @@ namespace takt::config {
 
 namespace {
 
-constexpr std::int64_t HighestPriority = 99;  // of SCHED_FIFO; interrupts and the kernel keep the rest
+constexpr std::int64_t HighestPriority =
+    99;  // of SCHED_FIFO; interrupts and the kernel keep the rest
 constexpr std::int64_t MostProcessors = 1023;
 constexpr std::int64_t MostMissed = 100'000;
 
@@ -18,8 +19,8 @@ constexpr std::int64_t MostMissed = 100'000;
 void readRealtime(ElementReader reader, scheduler::SchedulerParams& params) {
     using Policy = scheduler::OverrunPolicy;
     scheduler::OverrunParams& overruns = params.overruns;
-    params.priority =
-        static_cast<int>(reader.integer("priority", {0, HighestPriority}).value_or(params.priority));
+    params.priority = static_cast<int>(
+        reader.integer("priority", {0, HighestPriority}).value_or(params.priority));
     params.cpu = static_cast<int>(reader.integer("cpu", {0, MostProcessors}).value_or(params.cpu));
     overruns.policy =
         reader.choice<Policy>("overruns", {{"react", Policy::React}, {"count", Policy::Count}})

@@ -1,9 +1,8 @@
-/// Pick and place on a three-axis gantry: power on, home, then carry parts from one place to another.
-/// Every motion is a PLCopen block that is called once per cycle.
+/// Pick and place on a three-axis gantry: power on, home, then carry parts from one place to
+/// another. Every motion is a PLCopen block that is called once per cycle.
 
 #include <array>
 #include <cstddef>
-
 #include <takt/takt.hpp>
 
 namespace {
@@ -29,19 +28,28 @@ public:
             case Step::PowerOn:
                 if (allPowered()) next(Step::HomeZ);
                 break;
-            case Step::HomeZ: return home(machine, Z, Z + 1, Step::HomeXY);
-            case Step::HomeXY: return home(machine, X, AxisCount, Step::OverSource);
-            case Step::OverSource: return travel(machine, Source, Step::LowerToSource);
-            case Step::LowerToSource: return lift(machine, Low, Step::RaiseWithPart);
-            case Step::RaiseWithPart: return lift(machine, High, Step::OverTarget);
-            case Step::OverTarget: return travel(machine, target(), Step::LowerToTarget);
-            case Step::LowerToTarget: return lift(machine, Low, Step::RaiseEmpty);
-            case Step::RaiseEmpty: return lift(machine, High, Step::NextPart);
+            case Step::HomeZ:
+                return home(machine, Z, Z + 1, Step::HomeXY);
+            case Step::HomeXY:
+                return home(machine, X, AxisCount, Step::OverSource);
+            case Step::OverSource:
+                return travel(machine, Source, Step::LowerToSource);
+            case Step::LowerToSource:
+                return lift(machine, Low, Step::RaiseWithPart);
+            case Step::RaiseWithPart:
+                return lift(machine, High, Step::OverTarget);
+            case Step::OverTarget:
+                return travel(machine, target(), Step::LowerToTarget);
+            case Step::LowerToTarget:
+                return lift(machine, Low, Step::RaiseEmpty);
+            case Step::RaiseEmpty:
+                return lift(machine, High, Step::NextPart);
             case Step::NextPart:
                 ++parts_;
                 next(parts_ == Parts ? Step::Park : Step::OverSource);
                 break;
-            case Step::Park: return travel(machine, Home, Step::PowerOff);
+            case Step::Park:
+                return travel(machine, Home, Step::PowerOff);
             case Step::PowerOff:
                 for (auto& power : power_) power.Enable = false;
                 if (nonePowered()) return ProgramState::Finished;
@@ -57,8 +65,18 @@ public:
 
 private:
     enum class Step : int {
-        PowerOn, HomeZ, HomeXY, OverSource, LowerToSource, RaiseWithPart, OverTarget,
-        LowerToTarget, RaiseEmpty, NextPart, Park, PowerOff,
+        PowerOn,
+        HomeZ,
+        HomeXY,
+        OverSource,
+        LowerToSource,
+        RaiseWithPart,
+        OverTarget,
+        LowerToTarget,
+        RaiseEmpty,
+        NextPart,
+        Park,
+        PowerOff,
     };
     struct Place {
         double x, y;  // mm
@@ -143,9 +161,7 @@ private:
         machine.fail(reason);
         return false;
     }
-    void next(Step step) {
-        step_ = step;
-    }
+    void next(Step step) { step_ = step; }
 
     std::array<AxisRef, AxisCount> axes_;
     std::array<takt::MC_Power, AxisCount> power_;

@@ -20,7 +20,9 @@ private:
 };
 
 TEST_F(FaultFile, GivesLostFramesInAscendingOrder) {
-    const auto faults = load("<Faults>\n<LostFrames cycle=\"900\" cycles=\"4\"/>\n<LostFrames cycle=\"70\"/>\n</Faults>");
+    const auto faults = load(
+        "<Faults>\n<LostFrames cycle=\"900\" cycles=\"4\"/>\n<LostFrames "
+        "cycle=\"70\"/>\n</Faults>");
     ASSERT_TRUE(faults) << format(diagnostics);
     ASSERT_EQ(faults->lostFrames.size(), 2U);
     EXPECT_EQ(faults->lostFrames[0].cycle, 70U);

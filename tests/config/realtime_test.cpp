@@ -46,7 +46,8 @@ TEST_F(RealtimeElement, RefusesAnUnknownPolicy) {
     expectRefused(R"(<Realtime overruns="ignore"/>)", "not one of the choices", "react, count");
 }
 TEST_F(RealtimeElement, RefusesADriveStopBeforeTheStopOnPath) {
-    expectRefused(R"(<Realtime stopAfter="5" driveStopAfter="4"/>)", "would stop before", "5 (stopAfter)");
+    expectRefused(R"(<Realtime stopAfter="5" driveStopAfter="4"/>)", "would stop before",
+                  "5 (stopAfter)");
 }
 TEST_F(RealtimeElement, RefusesARateAboveAllCycles) {
     expectRefused(R"(<Realtime overrunRate="101 %"/>)", "more than all cycles", "100 %");

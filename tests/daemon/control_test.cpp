@@ -19,13 +19,14 @@ struct Operated {
              const std::string& machine = Gantry)
         : folder{freshFolder("control_" + name)} {
         writeFile(folder + "/in.txt", commands);
-        result = runTakt({"run", machine, "--fast", "--manual", "--for", length, "--commands", "in.txt",
-                          "--record-commands", "out.txt", "--trace", "t.csv"},
+        result = runTakt({"run", machine, "--fast", "--manual", "--for", length, "--commands",
+                          "in.txt", "--record-commands", "out.txt", "--trace", "t.csv"},
                          folder);
         EXPECT_EQ(result.exitCode, 0) << result.output;
-        const auto judged = runCommand({"python3", std::string{TAKT_SOURCE_DIR} + "/tests/machine/continuity.py",
-                                        "t.csv", "--machine", machine},
-                                       folder);
+        const auto judged =
+            runCommand({"python3", std::string{TAKT_SOURCE_DIR} + "/tests/machine/continuity.py",
+                        "t.csv", "--machine", machine},
+                       folder);
         EXPECT_EQ(judged.exitCode, 0) << judged.output;
     }
     [[nodiscard]] TraceFile trace() const { return TraceFile{folder + "/t.csv"}; }
@@ -91,8 +92,8 @@ TEST(Operator, SwitchesAnAxisOffInMotionOnItsRamp) {
 }
 
 TEST(Operator, IsHeardInTheSameCyclesWhenTheCommandsAreReplayed) {
-    const std::string commands = "200 power-on X\n300 inch X -3 20\n" + heartbeats(310, 700) + "700 stop\n" +
-                                 "900 reset-stop\n950 power-on X\n";
+    const std::string commands = "200 power-on X\n300 inch X -3 20\n" + heartbeats(310, 700) +
+                                 "700 stop\n" + "900 reset-stop\n950 power-on X\n";
     const Operated first{"replay_a", commands, "1500ms"};
     EXPECT_EQ(readFile(first.folder + "/out.txt"), commands);
     const Operated again{"replay_b", readFile(first.folder + "/out.txt"), "1500ms"};
@@ -103,10 +104,12 @@ TEST(Operator, IsHeardInTheSameCyclesWhenTheCommandsAreReplayed) {
 TEST(Operator, RefusedCommandsChangeNothing) {
     const std::string folder = freshFolder("control_refused");
     // All axes are held by the program; the inch is out of any range as well.
-    writeFile(folder + "/in.txt",
-              "150 power-off X\n1000 halt X\n1500 inch X 1e9 1e9\n2000 home Y\n2500 program-start pick\n"
-              "3000 reset-stop\n4000 reset Z\n");
-    const auto with = runTakt({"run", Gantry, "--fast", "--commands", "in.txt", "--trace", "a.csv"}, folder);
+    writeFile(
+        folder + "/in.txt",
+        "150 power-off X\n1000 halt X\n1500 inch X 1e9 1e9\n2000 home Y\n2500 program-start pick\n"
+        "3000 reset-stop\n4000 reset Z\n");
+    const auto with =
+        runTakt({"run", Gantry, "--fast", "--commands", "in.txt", "--trace", "a.csv"}, folder);
     const auto without = runTakt({"run", Gantry, "--fast", "--trace", "b.csv"}, folder);
     EXPECT_EQ(with.exitCode, 0) << with.output;
     EXPECT_EQ(without.exitCode, 0) << without.output;
@@ -116,8 +119,8 @@ TEST(Operator, RefusedCommandsChangeNothing) {
 TEST(Operator, StopsAProgramOnItsPathAndLetsItGoOn) {
     const std::string folder = freshFolder("control_program");
     writeFile(folder + "/in.txt", "400 program-stop signals\n1500 program-start signals\n");
-    const auto result = runTakt({"run", Gantry, "--fast", "--program", programPath("signals"), "--for", "3s",
-                                 "--commands", "in.txt", "--trace", "t.csv"},
+    const auto result = runTakt({"run", Gantry, "--fast", "--program", programPath("signals"),
+                                 "--for", "3s", "--commands", "in.txt", "--trace", "t.csv"},
                                 folder, {"TAKT_TEST_PHASE=never"});
     EXPECT_EQ(result.exitCode, 0) << result.output;
     const TraceFile trace{folder + "/t.csv"};
@@ -129,21 +132,25 @@ TEST(Operator, StopsAProgramOnItsPathAndLetsItGoOn) {
 TEST(CommandFile, IsRefusedWithLineAndReason) {
     const std::string folder = freshFolder("control_file");
     writeFile(folder + "/in.txt",
-              "# a comment\n100 jump X\n200 inch Q 1 1\n300 inch X 1\n150 halt X\n100 halt X\n400 stop now\nx stop\n"
+              "# a comment\n100 jump X\n200 inch Q 1 1\n300 inch X 1\n150 halt X\n100 halt X\n400 "
+              "stop now\nx stop\n"
               "500 inch X nan 1\n");
-    const auto result = runTakt({"run", Gantry, "--fast", "--manual", "--for", "1s", "--commands", "in.txt"}, folder);
+    const auto result = runTakt(
+        {"run", Gantry, "--fast", "--manual", "--for", "1s", "--commands", "in.txt"}, folder);
     EXPECT_EQ(result.exitCode, 1);
     for (const char* expected :
          {"in.txt:2: there is no order 'jump'", "in.txt:3: there is no 'Q'; allowed: X, Y, Z",
           "in.txt:4: expected: distance and velocity", "in.txt:6: cycle 100 comes after cycle 150",
-          "in.txt:7: 'now' is too much", "in.txt:8: expected: CYCLE ORDER", "in.txt:9: expected: distance"}) {
+          "in.txt:7: 'now' is too much", "in.txt:8: expected: CYCLE ORDER",
+          "in.txt:9: expected: distance"}) {
         EXPECT_THAT(result.output, HasSubstr(expected));
     }
 }
 
 TEST(MachineStop, ByAProgramHoldsUntilResetAndANewEdgeOfEnable) {
     const std::string folder = freshFolder("control_stop_program");
-    const auto result = runTakt({"run", Gantry, "--fast", "--program", programPath("control_probe"), "--for", "20s", "--trace", "t.csv"},
+    const auto result = runTakt({"run", Gantry, "--fast", "--program", programPath("control_probe"),
+                                 "--for", "20s", "--trace", "t.csv"},
                                 folder);
     EXPECT_EQ(result.exitCode, 0) << result.output;
     EXPECT_THAT(result.output, HasSubstr("by program 'control_probe': guard door open"));
@@ -153,10 +160,13 @@ TEST(MachineStop, ByAProgramHoldsUntilResetAndANewEdgeOfEnable) {
 
 TEST(MachineStop, ByAnInputStopsTheMachineAndCannotBeResetWhileItIsActive) {
     // Bit 2 of 60FDh is the home switch of Z; homing runs onto it.
-    const std::string machine = changedMachine(
-        "stop_input_machine", "<Program ", "<MachineStop><Input slave=\"z\" index=\"0x60FD\" bit=\"2\" active=\"high\"/></MachineStop>\n  <Program ");
+    const std::string machine =
+        changedMachine("stop_input_machine", "<Program ",
+                       "<MachineStop><Input slave=\"z\" index=\"0x60FD\" bit=\"2\" "
+                       "active=\"high\"/></MachineStop>\n  <Program ");
     const Operated run{"stop_input",
-                       "200 power-on Z\n300 home Z\n" + heartbeats(350, 4000) + "4000 reset-stop\n4100 power-on Z\n",
+                       "200 power-on Z\n300 home Z\n" + heartbeats(350, 4000) +
+                           "4000 reset-stop\n4100 power-on Z\n",
                        "5s", machine};
     EXPECT_THAT(run.result.output, HasSubstr("by input 'z 60FDh bit 2'"));
     EXPECT_THAT(run.result.output, Not(HasSubstr("machine stop reset")));
@@ -165,7 +175,8 @@ TEST(MachineStop, ByAnInputStopsTheMachineAndCannotBeResetWhileItIsActive) {
 }
 
 TEST(MachineStop, ByTheOperatorStopsTheAxisThatMoves) {
-    const Operated run{"stop", "200 power-on X\n200 power-on Y\n300 inch X 200 100\n350 stop\n", "1s"};
+    const Operated run{"stop", "200 power-on X\n200 power-on Y\n300 inch X 200 100\n350 stop\n",
+                       "1s"};
     const TraceFile trace = run.trace();
     EXPECT_EQ(trace.at(350, "X.state"), "Stopping");
     EXPECT_EQ(trace.at(350, "Y.state"), "Disabled");

@@ -12,7 +12,8 @@ std::string programPath(const std::string& name) {
     return std::string{TAKT_BINARY_DIR} + "/test_programs/" + name + ".so";
 }
 
-std::string changedMachine(const std::string& name, const std::string& from, const std::string& to) {
+std::string changedMachine(const std::string& name, const std::string& from,
+                           const std::string& to) {
     std::string text = readFile(Gantry);
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << "the base machine no longer has " << from;

@@ -1,6 +1,5 @@
-#include <gtest/gtest.h>
-
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -9,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-
 #include <takt/daemon/control_messages.hpp>
 #include <takt/daemon/control_socket.hpp>
 
@@ -19,7 +17,8 @@ namespace takt::daemon {
 namespace {
 
 TEST(ControlMessages, ARequestComesBackAsItWas) {
-    ControlRequest request{.id = 7, .verb = "inch", .axis = "X", .program = {}, .distance = -0.1, .velocity = 5};
+    ControlRequest request{
+        .id = 7, .verb = "inch", .axis = "X", .program = {}, .distance = -0.1, .velocity = 5};
     std::string error;
     const auto read = parseRequest(encode(request), error);
     ASSERT_TRUE(read) << error;
@@ -38,8 +37,9 @@ TEST(ControlMessages, ReadsWhatAPersonWouldType) {
 }
 
 TEST(ControlMessages, RefusesWhatIsNoRequestInWords) {
-    for (const char* bad : {"", "stop", "[]", "{}", "{\"do\":7}", "{\"do\":\"inch\",\"distance\":\"far\"}",
-                            "{\"do\":\"inch\",\"distance\":1e999}", "{\"do\":\"inch\",\"id\":-1}", "{\"do\":"}) {
+    for (const char* bad :
+         {"", "stop", "[]", "{}", "{\"do\":7}", "{\"do\":\"inch\",\"distance\":\"far\"}",
+          "{\"do\":\"inch\",\"distance\":1e999}", "{\"do\":\"inch\",\"id\":-1}", "{\"do\":"}) {
         std::string error;
         EXPECT_FALSE(parseRequest(bad, error)) << bad;
         EXPECT_FALSE(error.empty()) << bad;

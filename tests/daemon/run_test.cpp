@@ -57,8 +57,8 @@ TEST(Run, NamesTheLineOfAProgramThatIsRefused) {
 TEST(Run, RefusesEverythingThatIsWrongAtOnceAndStartsNothing) {
     const std::string file = changedMachine("half_started", "cycle=\"1 ms\"", "cycle=\"3 ms\"");
     const std::string trace = std::filesystem::path{file}.parent_path() / "a.csv";
-    const auto result = runTakt({"run", file, "--fast", "--trace", trace, "--program", "nowhere.so"},
-                                TAKT_BINARY_DIR);
+    const auto result = runTakt(
+        {"run", file, "--fast", "--trace", trace, "--program", "nowhere.so"}, TAKT_BINARY_DIR);
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_FALSE(std::filesystem::exists(trace));
 }
@@ -72,9 +72,10 @@ TEST(Run, StopsTheAxesOfAProgramThatThrowsAndKeepsTheBusInOp) {
     EXPECT_THAT(result.output, HasSubstr("the part is missing"));
     EXPECT_THAT(result.output, HasSubstr("0 lost"));
     EXPECT_THAT(result.output, HasSubstr("working counter errors 0"));
-    const auto judged = runCommand({"python3", std::string{TAKT_SOURCE_DIR} + "/tests/machine/continuity.py",
-                                    trace, "--machine", Gantry},
-                                   folder);
+    const auto judged =
+        runCommand({"python3", std::string{TAKT_SOURCE_DIR} + "/tests/machine/continuity.py", trace,
+                    "--machine", Gantry},
+                   folder);
     EXPECT_EQ(judged.exitCode, 0) << judged.output;
     const std::string text = readFile(trace);
     EXPECT_THAT(text, HasSubstr("ContinuousMotion"));
@@ -90,9 +91,9 @@ TEST(Run, TellsWhyAProgramFailedAndWhatItWatches) {
 
 TEST(Run, RunsAProgramThatIsLinkedIntoTheExecutable) {
     const std::string file = changedMachine("linked", "library=\"libgantry.so\"", "");
-    const auto result = runCommand({std::string{TAKT_BINARY_DIR} + "/test_programs/linked_program", "run",
-                                    file, "--fast"},
-                                   TAKT_BINARY_DIR);
+    const auto result = runCommand(
+        {std::string{TAKT_BINARY_DIR} + "/test_programs/linked_program", "run", file, "--fast"},
+        TAKT_BINARY_DIR);
     EXPECT_EQ(result.exitCode, 0) << result.output;
     EXPECT_THAT(result.output, HasSubstr("'pick'"));
 }
@@ -106,12 +107,14 @@ TEST(Run, RefusesAProgramThatShouldBeLinkedInAndIsNot) {
 }
 
 TEST(Run, EndsAfterTheTimeAskedForWithoutPrograms) {
-    const auto result = runTakt({"run", Gantry, "--fast", "--manual", "--for", "500ms"}, TAKT_BINARY_DIR);
+    const auto result =
+        runTakt({"run", Gantry, "--fast", "--manual", "--for", "500ms"}, TAKT_BINARY_DIR);
     EXPECT_EQ(result.exitCode, 0) << result.output;
 }
 
 TEST(Run, SaysWhichFileCannotBeWrittenBeforeAnythingMoves) {
-    const auto result = runTakt({"run", Gantry, "--fast", "--trace", "/nowhere/a.csv"}, TAKT_BINARY_DIR);
+    const auto result =
+        runTakt({"run", Gantry, "--fast", "--trace", "/nowhere/a.csv"}, TAKT_BINARY_DIR);
     EXPECT_EQ(result.exitCode, 2);
     EXPECT_THAT(result.output, HasSubstr("/nowhere/a.csv"));
     EXPECT_THAT(result.output, Not(HasSubstr("devices")));
@@ -119,14 +122,17 @@ TEST(Run, SaysWhichFileCannotBeWrittenBeforeAnythingMoves) {
 
 TEST(Run, RefusesACommandLineItDoesNotUnderstand) {
     EXPECT_EQ(runTakt({"run", Gantry, "--fats"}, TAKT_BINARY_DIR).exitCode, 1);
-    EXPECT_EQ(runTakt({"run", Gantry, "--fast", "--for", "10 apples"}, TAKT_BINARY_DIR).exitCode, 1);
+    EXPECT_EQ(runTakt({"run", Gantry, "--fast", "--for", "10 apples"}, TAKT_BINARY_DIR).exitCode,
+              1);
 }
 
 /// A run of the gantry in which frames get lost while X and Y travel.
 ProcessResult runWithLostFrames(const std::string& name, int cycles, const std::string& trace) {
     const std::string faults = freshFolder(name) + "/faults.xml";
-    writeFile(faults, "<Faults><LostFrames cycle=\"7000\" cycles=\"" + std::to_string(cycles) + "\"/></Faults>");
-    return runTakt({"run", Gantry, "--fast", "--faults", faults, "--trace", trace}, TAKT_BINARY_DIR);
+    writeFile(faults, "<Faults><LostFrames cycle=\"7000\" cycles=\"" + std::to_string(cycles) +
+                          "\"/></Faults>");
+    return runTakt({"run", Gantry, "--fast", "--faults", faults, "--trace", trace},
+                   TAKT_BINARY_DIR);
 }
 
 TEST(Run, CarriesOnOverAsManyLostFramesAsTheNetworkTolerates) {

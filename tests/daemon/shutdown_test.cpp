@@ -23,17 +23,20 @@ struct Ending {
 /// Runs the gantry until the program raises a signal in a phase of its motion.
 Ending endIn(const std::string& phase, const std::vector<std::string>& environment = {},
              const std::string& machine = Gantry) {
-    const std::string folder = freshFolder("shutdown_" + phase + std::to_string(environment.size()));
+    const std::string folder =
+        freshFolder("shutdown_" + phase + std::to_string(environment.size()));
     std::vector<std::string> settings{"TAKT_TEST_PHASE=" + phase};
     settings.insert(settings.end(), environment.begin(), environment.end());
-    auto result = runTakt({"run", machine, "--fast", "--program", programPath("signals"), "--for", "20s", "--trace", "t.csv"},
+    auto result = runTakt({"run", machine, "--fast", "--program", programPath("signals"), "--for",
+                           "20s", "--trace", "t.csv"},
                           folder, settings);
     TraceFile trace{folder + "/t.csv"};
     // No axis follows set-points before it is on, nor while the drive homes by itself.
     if (phase == "enable" || phase == "homing") return {std::move(result), std::move(trace)};
-    const auto judged = runCommand({"python3", std::string{TAKT_SOURCE_DIR} + "/tests/machine/continuity.py",
-                                    "t.csv", "--machine", machine},
-                                   folder);
+    const auto judged =
+        runCommand({"python3", std::string{TAKT_SOURCE_DIR} + "/tests/machine/continuity.py",
+                    "t.csv", "--machine", machine},
+                   folder);
     EXPECT_EQ(judged.exitCode, 0) << judged.output;
     return {std::move(result), std::move(trace)};
 }
@@ -56,12 +59,13 @@ TEST_P(Interrupt, StopsTheAxesWithinTheirLimitsAndDisablesThem) {
     ASSERT_GT(ending.trace.size(), 0U);
     expectDisabledAtTheEnd(ending);
     EXPECT_FALSE(ending.trace.everWas("X.state", "ErrorStop"));
-    EXPECT_NEAR(ending.trace.number(ending.trace.size() - 1, "X.actualVel"), 0.0, 3.0);  // one count and a half
+    EXPECT_NEAR(ending.trace.number(ending.trace.size() - 1, "X.actualVel"), 0.0,
+                3.0);  // one count and a half
 }
 
 INSTANTIATE_TEST_SUITE_P(InEveryPhase, Interrupt,
-                         testing::Values("enable", "homing", "acceleration", "constant", "deceleration",
-                                         "standstill"),
+                         testing::Values("enable", "homing", "acceleration", "constant",
+                                         "deceleration", "standstill"),
                          [](const auto& phase) { return std::string{phase.param}; });
 
 TEST(Shutdown, TheAxisGoesThroughStoppingAndNeverJumpsToRest) {
@@ -85,34 +89,39 @@ TEST(Shutdown, AHangUpOfTheTerminalIsAControlledStopToo) {
 
 TEST(Shutdown, ASuspendKeyAndAClosedPipeDoNotTouchTheMachine) {
     for (const char* number : {"TAKT_TEST_SIGNAL=13", "TAKT_TEST_SIGNAL=20"}) {
-        const auto result = runTakt({"run", Gantry, "--fast", "--program", programPath("signals"), "--for", "3s"},
-                                    TAKT_BINARY_DIR, {"TAKT_TEST_PHASE=constant", number});
+        const auto result =
+            runTakt({"run", Gantry, "--fast", "--program", programPath("signals"), "--for", "3s"},
+                    TAKT_BINARY_DIR, {"TAKT_TEST_PHASE=constant", number});
         EXPECT_EQ(result.exitCode, 0) << number << "\n" << result.output;
     }
 }
 
 TEST(Shutdown, ASecondSignalLetsTheDriveStopQuickly) {
     const std::string folder = freshFolder("shutdown_second");
-    const auto result = runTakt({"run", Gantry, "--fast", "--program", programPath("signals"), "--for", "20s", "--trace", "t.csv"},
+    const auto result = runTakt({"run", Gantry, "--fast", "--program", programPath("signals"),
+                                 "--for", "20s", "--trace", "t.csv"},
                                 folder, {"TAKT_TEST_PHASE=constant", "TAKT_TEST_COUNT=2"});
     EXPECT_EQ(result.exitCode, 130) << result.output;
     const TraceFile trace{folder + "/t.csv"};
     // Quick stop: enable voltage without bit 2 (CiA 402 controlword 0x0002).
     bool quick = false;
     for (std::size_t row = 0; row < trace.size(); ++row) {
-        const unsigned long control = std::strtoul(trace.at(row, "X.controlword").c_str(), nullptr, 0);
-        const bool running = (std::strtoul(trace.at(row, "X.statusword").c_str(), nullptr, 0) & StateMask) ==
-                             OperationEnabled;
+        const unsigned long control =
+            std::strtoul(trace.at(row, "X.controlword").c_str(), nullptr, 0);
+        const bool running = (std::strtoul(trace.at(row, "X.statusword").c_str(), nullptr, 0) &
+                              StateMask) == OperationEnabled;
         quick = quick || (running && (control & 0x87U) == 0x02U);
     }
     EXPECT_TRUE(quick);
 }
 
 TEST(Shutdown, NamesTheAxisThatDoesNotStopInTime) {
-    const std::string machine = changedMachine("shutdown_slow", "stopDeceleration=\"6000 mm/s^2\"",
-                                               "stopDeceleration=\"10 mm/s^2\"");  // from 100 mm/s: 11 s
-    const auto result = runTakt({"run", machine, "--fast", "--program", programPath("signals"), "--for", "30s"}, TAKT_BINARY_DIR,
-                                {"TAKT_TEST_PHASE=acceleration"});
+    const std::string machine =
+        changedMachine("shutdown_slow", "stopDeceleration=\"6000 mm/s^2\"",
+                       "stopDeceleration=\"10 mm/s^2\"");  // from 100 mm/s: 11 s
+    const auto result =
+        runTakt({"run", machine, "--fast", "--program", programPath("signals"), "--for", "30s"},
+                TAKT_BINARY_DIR, {"TAKT_TEST_PHASE=acceleration"});
     EXPECT_EQ(result.exitCode, 5) << result.output;
     EXPECT_THAT(result.output, HasSubstr("axis X did not stop and power off within 10 s"));
     EXPECT_THAT(result.output, Not(HasSubstr("axis Y did not")));
@@ -123,8 +132,8 @@ TEST(Shutdown, GoesOnWhenItsOutputIsClosed) {
     const std::string folder = freshFolder("shutdown_pipe");
     const auto result = runCommand(
         {"bash", "-c",
-         std::string{TAKT_BINARY_DIR} + "/takt run " + Gantry + " --fast --trace t.csv | head -n 1 > /dev/null; " +
-             "echo run ${PIPESTATUS[0]}"},
+         std::string{TAKT_BINARY_DIR} + "/takt run " + Gantry +
+             " --fast --trace t.csv | head -n 1 > /dev/null; " + "echo run ${PIPESTATUS[0]}"},
         folder);
     EXPECT_THAT(result.output, HasSubstr("run 0"));
     EXPECT_EQ(TraceFile{folder + "/t.csv"}.last("X.state"), "Disabled");

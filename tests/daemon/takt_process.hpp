@@ -11,8 +11,9 @@ struct ProcessResult {
     std::string output;  ///< stdout and stderr together
 };
 
-/// Runs `takt` of this build with the given arguments, in the folder `workDir`. Where the build has the
-/// trap library it is loaded in front, so that an allocation or a lock in the cycle ends the run.
+/// Runs `takt` of this build with the given arguments, in the folder `workDir`. Where the build has
+/// the trap library it is loaded in front, so that an allocation or a lock in the cycle ends the
+/// run.
 ProcessResult runTakt(const std::vector<std::string>& arguments, const std::string& workDir,
                       const std::vector<std::string>& extraEnvironment = {});
 

@@ -11,14 +11,16 @@ using testing::HasSubstr;
 const std::string Source = TAKT_SOURCE_DIR;
 const std::string Machine = Source + "/samples/03_gantry/machine.xml";
 
-/// One run of the sample with all outputs on, in a folder of its own for each rule: they run side by side.
+/// One run of the sample with all outputs on, in a folder of its own for each rule: they run side
+/// by side.
 class GantryRun : public testing::Test {
 protected:
     void SetUp() override {
         folder = freshFolder(std::string{"gantry_"} +
                              testing::UnitTest::GetInstance()->current_test_info()->name());
-        result = runTakt({"run", Machine, "--fast", "--trace", "a.csv", "--plot", "a.svg", "--pcap", "a.pcapng"},
-                         folder);
+        result = runTakt(
+            {"run", Machine, "--fast", "--trace", "a.csv", "--plot", "a.svg", "--pcap", "a.pcapng"},
+            folder);
     }
     [[nodiscard]] ProcessResult python(const std::vector<std::string>& arguments) const {
         std::vector<std::string> command{"python3"};
@@ -44,7 +46,8 @@ TEST_F(GantryRun, LeavesTheSameTraceByteForByteWhenRunAgain) {
 }
 
 TEST_F(GantryRun, KeepsTheLimitsOfEveryAxisInEveryCycle) {
-    const auto judged = python({Source + "/tests/machine/continuity.py", "a.csv", "--machine", Machine});
+    const auto judged =
+        python({Source + "/tests/machine/continuity.py", "a.csv", "--machine", Machine});
     EXPECT_EQ(judged.exitCode, 0) << judged.output;
 }
 
@@ -55,13 +58,16 @@ TEST_F(GantryRun, PutsNoMalformedFrameOnTheWire) {
 }
 
 TEST_F(GantryRun, CapturesEveryFrameTwiceAndNothingElse) {
-    const auto all = runCommand({"sh", "-c", "tshark -r a.pcapng -Y ecat -T fields -e frame.number 2>/dev/null | wc -l"},
-                                folder);
-    EXPECT_THAT(result.output, HasSubstr("capture: " + std::to_string(std::stoul(all.output)) + " frames"));
-    const auto sent = runCommand({"sh", "-c",
-                                  "tshark -r a.pcapng -Y 'ecat and frame.packet_flags_direction == 2' -T fields "
-                                  "-e frame.number 2>/dev/null | wc -l"},
-                                 folder);
+    const auto all = runCommand(
+        {"sh", "-c", "tshark -r a.pcapng -Y ecat -T fields -e frame.number 2>/dev/null | wc -l"},
+        folder);
+    EXPECT_THAT(result.output,
+                HasSubstr("capture: " + std::to_string(std::stoul(all.output)) + " frames"));
+    const auto sent =
+        runCommand({"sh", "-c",
+                    "tshark -r a.pcapng -Y 'ecat and frame.packet_flags_direction == 2' -T fields "
+                    "-e frame.number 2>/dev/null | wc -l"},
+                   folder);
     EXPECT_GT(std::stoul(sent.output), 10000U);
     EXPECT_EQ(std::stoul(all.output), 2 * std::stoul(sent.output));
 }
@@ -72,7 +78,8 @@ TEST_F(GantryRun, IsWatchedByTheTrapInEveryCycle) {
         return;
     }
     // One arming a cycle, one more after each pause in the memory link and after each program call.
-    const auto watched = runTakt({"run", Machine, "--fast", "--quiet"}, folder, {"TAKT_TRAP_REPORT=trap.txt"});
+    const auto watched =
+        runTakt({"run", Machine, "--fast", "--quiet"}, folder, {"TAKT_TRAP_REPORT=trap.txt"});
     ASSERT_EQ(watched.exitCode, 0) << watched.output;
     const std::string report = readFile(folder + "/trap.txt");
     EXPECT_THAT(report, HasSubstr("no hit"));
@@ -80,7 +87,8 @@ TEST_F(GantryRun, IsWatchedByTheTrapInEveryCycle) {
 }
 
 TEST_F(GantryRun, GetsTheWorkingCountersThatTheMachineFileForetells) {
-    const auto judged = python({Source + "/tests/machine/working_counters.py", "a.pcapng", Machine});
+    const auto judged =
+        python({Source + "/tests/machine/working_counters.py", "a.pcapng", Machine});
     EXPECT_EQ(judged.exitCode, 0) << judged.output;
 }
 

@@ -12,8 +12,8 @@ using testing::SizeIs;
 
 const std::string Source = TAKT_SOURCE_DIR;
 
-/// Two namespaces, a veth pair between them, the simulated machine on its far end. States, identities and
-/// positions are judged, never times.
+/// Two namespaces, a veth pair between them, the simulated machine on its far end. States,
+/// identities and positions are judged, never times.
 class Interface : public testing::Test {
 protected:
     void SetUp() override {
@@ -32,8 +32,8 @@ protected:
         EXPECT_THAT(result_.output, HasSubstr("run exit 2"));
     }
     void expectSmoothTrace() {
-        const auto judged = runCommand({"python3", Source + "/tests/machine/continuity.py", "trace.csv", "--machine",
-                                        Source + "/tests/rt/machine.xml"},
+        const auto judged = runCommand({"python3", Source + "/tests/machine/continuity.py",
+                                        "trace.csv", "--machine", Source + "/tests/rt/machine.xml"},
                                        folder_);
         EXPECT_EQ(judged.exitCode, 0) << judged.output;
     }
@@ -65,14 +65,17 @@ TEST_F(Interface, RunsWithThreeCapabilitiesAndGivesThemUpAfterTheStart) {
     const auto left = linesWith(result_.output, "left over:");
     EXPECT_GE(left.size(), 3U) << "the cycle, the program, the house";
     for (const std::string& line : left) {
-        EXPECT_THAT(line, testing::MatchesRegex("left over: CapPrm:.0000000000000000 CapEff:.0000000000000000 "));
+        EXPECT_THAT(line, testing::MatchesRegex(
+                              "left over: CapPrm:.0000000000000000 CapEff:.0000000000000000 "));
     }
     EXPECT_THAT(result_.output, HasSubstr("end: x: INIT, drive Switch on disabled"));
 }
 
 TEST_F(Interface, NamesTheCapabilityThatIsMissing) {
     play("missing_capability");
-    expectOneLine("interface 'bus0': no permission to open a raw socket; takt needs the capability CAP_NET_RAW");
+    expectOneLine(
+        "interface 'bus0': no permission to open a raw socket; takt needs the capability "
+        "CAP_NET_RAW");
 }
 
 TEST_F(Interface, SaysThatItIsDown) {
@@ -87,7 +90,8 @@ TEST_F(Interface, SaysThatItDoesNotExist) {
 
 TEST_F(Interface, SaysThatAnotherTaktOwnsIt) {
     play("owned");
-    EXPECT_THAT(linesWith(result_.output, "interface 'bus0': is owned by another takt"), SizeIs(1)) << result_.output;
+    EXPECT_THAT(linesWith(result_.output, "interface 'bus0': is owned by another takt"), SizeIs(1))
+        << result_.output;
     EXPECT_THAT(result_.output, HasSubstr("run exit 2"));
     EXPECT_THAT(result_.output, HasSubstr("sim exit 0"));
 }
@@ -122,7 +126,8 @@ TEST_F(Interface, LeavesTheDrivesSafeByTheirWatchdogWhenKilled) {
 }
 
 TEST_F(Interface, IsRefusedTogetherWithFast) {
-    const auto result = runTakt({"run", Source + "/tests/rt/machine.xml", "--interface", "bus0", "--fast"}, folder_);
+    const auto result = runTakt(
+        {"run", Source + "/tests/rt/machine.xml", "--interface", "bus0", "--fast"}, folder_);
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_THAT(result.output, HasSubstr("--fast"));
 }

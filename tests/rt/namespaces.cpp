@@ -13,7 +13,8 @@ const std::string Build = TAKT_BINARY_DIR;
 std::string namespacesForbidden() {
     const ProcessResult tried = runCommand({"unshare", "-Urn", "ip", "link", "show"}, Build);
     if (tried.exitCode == 0) return {};
-    return "this test needs user and network namespaces, and `unshare -Urn` fails: " + tried.output +
+    return "this test needs user and network namespaces, and `unshare -Urn` fails: " +
+           tried.output +
            "\ndo: sysctl kernel.unprivileged_userns_clone=1, or on Ubuntu\n"
            "    sysctl kernel.apparmor_restrict_unprivileged_userns=0, or run a container with\n"
            "    --security-opt seccomp=unconfined; install iproute2 and util-linux";
@@ -22,9 +23,18 @@ std::string namespacesForbidden() {
 ProcessResult inNamespaces(const std::string& scenario, const std::string& work,
                            const std::vector<std::string>& more) {
     // `timeout` ends everything that was started, should an event never come.
-    std::vector<std::string> command{"timeout",   "-s",     "KILL", "200",          "unshare",
-                                     "-Urn",      "bash",   Here + "/segment.sh",   scenario,
-                                     work,        Build + "/takt", Here + "/machine.xml",
+    std::vector<std::string> command{"timeout",
+                                     "-s",
+                                     "KILL",
+                                     "200",
+                                     "unshare",
+                                     "-Urn",
+                                     "bash",
+                                     Here + "/segment.sh",
+                                     scenario,
+                                     work,
+                                     Build + "/takt",
+                                     Here + "/machine.xml",
                                      Build + "/test_programs"};
     command.insert(command.end(), more.begin(), more.end());
     const std::string trap = Build + "/libtakt_trap.so";

@@ -1,12 +1,11 @@
+#include "program_caller.hpp"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <future>
 #include <memory>
-
 #include <takt/core/monotonic_clock.hpp>
-
-#include "program_caller.hpp"
 
 namespace takt::daemon {
 namespace {
@@ -41,13 +40,16 @@ private:
 class OnAThread : public testing::Test {
 protected:
     OnAThread() {
-        program::ProgramPtr program{new Scripted{script_},
-                                    program::ProgramDeleter{nullptr, [](program::Program* p) { delete p; }}};
+        program::ProgramPtr program{
+            new Scripted{script_},
+            program::ProgramDeleter{nullptr, [](program::Program* p) { delete p; }}};
         work_ = std::make_unique<ProgramWork>(std::move(program), 0, std::uint16_t{1});
-        work_->setMachine(std::make_unique<program::Machine>(std::vector<program::Machine::NamedAxis>{}, 1ms));
+        work_->setMachine(
+            std::make_unique<program::Machine>(std::vector<program::Machine::NamedAxis>{}, 1ms));
     }
     std::unique_ptr<ThreadCaller> caller(core::Duration budget, bool lenient = false) {
-        return std::make_unique<ThreadCaller>(ThreadPlace{"test", 0, -1}, CallBudget{budget, lenient}, clock_, notes_);
+        return std::make_unique<ThreadCaller>(ThreadPlace{"test", 0, -1},
+                                              CallBudget{budget, lenient}, clock_, notes_);
     }
 
     core::MonotonicClock clock_;
@@ -85,7 +87,8 @@ TEST_F(OnAThread, ACallThatIsKeptFromTheProcessorIsExcusedWhereThatIsAllowed) {
     script_->block = false;
     script_->block.notify_all();
     CallOutcome outcome = CallOutcome::Late;
-    for (core::CycleNumber i = 1; outcome == CallOutcome::Late && i < 400; ++i) outcome = thread->call(*work_, i);
+    for (core::CycleNumber i = 1; outcome == CallOutcome::Late && i < 400; ++i)
+        outcome = thread->call(*work_, i);
     EXPECT_EQ(outcome, CallOutcome::CameBack);
     EXPECT_EQ(script_->calls, 1) << "the late call is the same one";
 }
@@ -94,7 +97,8 @@ TEST_F(OnAThread, ACallThatUsesUpTheProcessorIsNotExcused) {
     script_->spin = true;
     const auto thread = caller(Little, true);
     CallOutcome outcome = CallOutcome::Late;
-    for (core::CycleNumber i = 0; outcome == CallOutcome::Late && i < 2000; ++i) outcome = thread->call(*work_, i);
+    for (core::CycleNumber i = 0; outcome == CallOutcome::Late && i < 2000; ++i)
+        outcome = thread->call(*work_, i);
     EXPECT_EQ(outcome, CallOutcome::Abandoned);
     script_->spin = false;
     static_cast<void>(work_.release());
@@ -102,7 +106,9 @@ TEST_F(OnAThread, ACallThatUsesUpTheProcessorIsNotExcused) {
 
 TEST(ProgramWatchdog, NamesTheCallThatDoesNotComeBack) {
     std::promise<std::pair<std::size_t, core::CycleNumber>> told;
-    ProgramWatchdog watchdog{20ms, [&told](std::size_t program, core::CycleNumber cycle) { told.set_value({program, cycle}); }};
+    ProgramWatchdog watchdog{20ms, [&told](std::size_t program, core::CycleNumber cycle) {
+                                 told.set_value({program, cycle});
+                             }};
     watchdog.begin(2, 4711);
     EXPECT_EQ(told.get_future().get(), (std::pair<std::size_t, core::CycleNumber>{2, 4711}));
 }

@@ -31,7 +31,8 @@ Counts busiest(const std::map<std::string, Counts>& threads, const std::string& 
     for (const auto& [thread, counts] : threads) {
         if (!butNot.empty() && counts.contains(butNot)) continue;
         const auto found = counts.find(call);
-        if (found != counts.end() && (!best.contains(call) || found->second > best[call])) best = counts;
+        if (found != counts.end() && (!best.contains(call) || found->second > best[call]))
+            best = counts;
     }
     return best;
 }
@@ -67,12 +68,14 @@ TEST(SystemCalls, AreOneSendOneReceiveOneSleepAndTwoAtEachGate) {
     const auto longer = readCalls(folder + "/calls.3s");
 
     // Bring-up sends too, in another thread: the cycle's is the one that waits at gates.
-    Counts cycle = difference(busiest(longer, "clock_nanosleep", "execve"), busiest(shorter, "clock_nanosleep", "execve"));
+    Counts cycle = difference(busiest(longer, "clock_nanosleep", "execve"),
+                              busiest(shorter, "clock_nanosleep", "execve"));
     const double cycles = cycle["sendmmsg"];
     ASSERT_GT(cycles, 400) << result.output;
     EXPECT_EQ(cycle["clock_nanosleep"], cycles);
-    // A reply or a call that is already back need not be waited for. On a busy computer a reply may be late,
-    // which costs one more wait, and so may a call, which costs a look at the processor time it has had.
+    // A reply or a call that is already back need not be waited for. On a busy computer a reply may
+    // be late, which costs one more wait, and so may a call, which costs a look at the processor
+    // time it has had.
     const double spare = 0.02 * cycles;
     const double lateCalls = cycle["clock_gettime"];
     EXPECT_LE(cycle["ppoll"], cycles + spare + strayFrames(result.output));
@@ -80,10 +83,13 @@ TEST(SystemCalls, AreOneSendOneReceiveOneSleepAndTwoAtEachGate) {
     EXPECT_LE(cycle["futex"], 2 * cycles + spare);
     cycle.erase("clock_gettime");
     for (const auto& [call, count] : cycle) {
-        const bool known = call == "sendmmsg" || call == "ppoll" || call == "clock_nanosleep" || call == "futex";
-        EXPECT_TRUE(known || count < spare) << call << ": " << count << " more in " << cycles << " cycles";
+        const bool known =
+            call == "sendmmsg" || call == "ppoll" || call == "clock_nanosleep" || call == "futex";
+        EXPECT_TRUE(known || count < spare)
+            << call << ": " << count << " more in " << cycles << " cycles";
     }
-    Counts program = difference(busiest(longer, "futex", "sendmmsg"), busiest(shorter, "futex", "sendmmsg"));
+    Counts program =
+        difference(busiest(longer, "futex", "sendmmsg"), busiest(shorter, "futex", "sendmmsg"));
     EXPECT_LE(program["futex"], 2 * cycles + spare);
     EXPECT_GE(program["futex"], cycles - lateCalls);
     program.erase("futex");

@@ -1,8 +1,7 @@
-#include <takt/scheduler/dc_lock.hpp>
+#include <gtest/gtest.h>
 
 #include <cmath>
-
-#include <gtest/gtest.h>
+#include <takt/scheduler/dc_lock.hpp>
 
 namespace takt::scheduler {
 namespace {

@@ -1,6 +1,6 @@
-#include <takt/scheduler/grid.hpp>
-
 #include <gtest/gtest.h>
+
+#include <takt/scheduler/grid.hpp>
 
 namespace takt::scheduler {
 namespace {

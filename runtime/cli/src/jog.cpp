@@ -1,9 +1,9 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "remote.hpp"
 #include "terminal.hpp"
@@ -29,7 +29,8 @@ class Jog {
 public:
     Jog(const JogOptions& options, Remote& remote) : options_{options}, remote_{remote} {
         steps_ = stepsAround(options.distance);
-        step_ = static_cast<std::size_t>(std::find(steps_.begin(), steps_.end(), options.distance) - steps_.begin());
+        step_ = static_cast<std::size_t>(std::find(steps_.begin(), steps_.end(), options.distance) -
+                                         steps_.begin());
     }
 
     /// \return the unit of the axis. \throw std::runtime_error when there is no such axis
@@ -38,13 +39,16 @@ public:
         for (const auto& axis : status.axes) {
             if (axis.name == options_.axis) unit_ = axis.unit;
         }
-        if (unit_.empty()) throw std::runtime_error{fmt::format("there is no axis '{}'", options_.axis)};
+        if (unit_.empty())
+            throw std::runtime_error{fmt::format("there is no axis '{}'", options_.axis)};
     }
 
     void run() {
         Terminal terminal;
-        fmt::print("axis {}: left/right (or - +) moves one step, up/down changes the step, space stops, q ends\r\n",
-                   options_.axis);
+        fmt::print(
+            "axis {}: left/right (or - +) moves one step, up/down changes the step, space stops, q "
+            "ends\r\n",
+            options_.axis);
         for (;;) {
             if (const auto key = terminal.key(HeartbeatEvery)) {
                 if (*key == Key::Quit) break;
@@ -61,13 +65,21 @@ public:
 private:
     void press(Key key) {
         switch (key) {
-            case Key::Left: return inch(-steps_[step_]);
-            case Key::Right: return inch(steps_[step_]);
-            case Key::Up: step_ = std::min(step_ + 1, steps_.size() - 1); return;
-            case Key::Down: step_ = step_ == 0 ? 0 : step_ - 1; return;
-            case Key::Space: return static_cast<void>(send("halt", 0.0));
+            case Key::Left:
+                return inch(-steps_[step_]);
+            case Key::Right:
+                return inch(steps_[step_]);
+            case Key::Up:
+                step_ = std::min(step_ + 1, steps_.size() - 1);
+                return;
+            case Key::Down:
+                step_ = step_ == 0 ? 0 : step_ - 1;
+                return;
+            case Key::Space:
+                return static_cast<void>(send("halt", 0.0));
             case Key::Other:
-            case Key::Quit: return;
+            case Key::Quit:
+                return;
         }
     }
 
@@ -110,8 +122,9 @@ private:
         std::string note = note_;
         if (!status.machineStop.empty()) note = "MACHINE STOP by " + status.machineStop;
         if (!axis.error.empty()) note = axis.error;
-        fmt::print("\r\033[K{} {:12.4f} {}  {:<16} step {:g} {} at {:g} {}/s  {}", axis.name, axis.actual, unit_,
-                   axis.state, steps_[step_], unit_, options_.velocity, unit_, note);
+        fmt::print("\r\033[K{} {:12.4f} {}  {:<16} step {:g} {} at {:g} {}/s  {}", axis.name,
+                   axis.actual, unit_, axis.state, steps_[step_], unit_, options_.velocity, unit_,
+                   note);
         std::fflush(stdout);
     }
 

@@ -1,3 +1,5 @@
 #include <takt/cli/command_line.hpp>
 
-int main(int argc, char** argv) { return takt::cli::commandLine(argc, argv); }
+int main(int argc, char** argv) {
+    return takt::cli::commandLine(argc, argv);
+}

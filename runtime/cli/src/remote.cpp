@@ -1,5 +1,6 @@
 #include "remote.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -10,9 +11,6 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
-
-#include <fmt/format.h>
-
 #include <takt/daemon/control_socket.hpp>
 
 namespace takt::cli {
@@ -27,7 +25,8 @@ constexpr auto ReplyTimeout = 5s;
 
 std::filesystem::path onlyMachine() {
     const auto running = daemon::runningMachines();
-    if (running.empty()) throw std::runtime_error{"no machine runs here; do: takt run, or name its --socket"};
+    if (running.empty())
+        throw std::runtime_error{"no machine runs here; do: takt run, or name its --socket"};
     if (running.size() == 1) return running.front();
     std::string list;
     for (const auto& path : running) list += "\n  " + path.string();
@@ -38,7 +37,8 @@ int connectTo(const std::filesystem::path& path) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     const std::string name = path.string();
-    if (name.size() >= sizeof(address.sun_path)) throw std::runtime_error{name + ": the path is too long"};
+    if (name.size() >= sizeof(address.sun_path))
+        throw std::runtime_error{name + ": the path is too long"};
     std::memcpy(address.sun_path, name.c_str(), name.size() + 1);
     const int connection = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (connection >= 0 &&
@@ -58,9 +58,12 @@ int noMachine(const std::string& why) {
 }
 
 Remote::Remote(const RemoteOptions& options, std::string who)
-    : socket_{connectTo(options.socket.empty() ? onlyMachine() : options.socket)}, who_{std::move(who)} {}
+    : socket_{connectTo(options.socket.empty() ? onlyMachine() : options.socket)},
+      who_{std::move(who)} {}
 
-Remote::~Remote() { ::close(socket_); }
+Remote::~Remote() {
+    ::close(socket_);
+}
 
 std::uint64_t Remote::send(daemon::ControlRequest request) {
     request.id = ++lastId_;
@@ -146,7 +149,8 @@ int runOrder(const OrderOptions& options) {
         if (options.remote.json) {
             fmt::print("{}\n", remote.lastLine());
         } else if (reply->kind != daemon::ReplyKind::Done) {
-            fmt::print(stderr, "{}\n", reply->error.empty() ? "another command took its place" : reply->error);
+            fmt::print(stderr, "{}\n",
+                       reply->error.empty() ? "another command took its place" : reply->error);
         }
         return reply->kind == daemon::ReplyKind::Done ? 0 : 1;
     } catch (const std::runtime_error& error) {
@@ -165,10 +169,12 @@ int runEvents(const EventsOptions& options) {
             for (const daemon::EventReport& event : *reply->events) {
                 request.after = event.number;
                 if (!options.remote.json) {
-                    fmt::print("{:>12.6f} s  cycle {:>9}  {}\n", event.seconds, event.cycle, event.text);
+                    fmt::print("{:>12.6f} s  cycle {:>9}  {}\n", event.seconds, event.cycle,
+                               event.text);
                 }
             }
-            if (options.remote.json && !reply->events->empty()) fmt::print("{}\n", remote.lastLine());
+            if (options.remote.json && !reply->events->empty())
+                fmt::print("{}\n", remote.lastLine());
             std::fflush(stdout);
             if (options.follow) ::poll(nullptr, 0, 100);
         } while (options.follow);

@@ -6,7 +6,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-
 #include <takt/daemon/control_messages.hpp>
 
 namespace takt::cli {
@@ -17,8 +16,8 @@ struct RemoteOptions {
     bool json{false};
 };
 
-/// A connection to a running machine. Every function that waits throws std::runtime_error, in words for
-/// the user, when the machine cannot be reached or goes away.
+/// A connection to a running machine. Every function that waits throws std::runtime_error, in words
+/// for the user, when the machine cannot be reached or goes away.
 class Remote {
 public:
     explicit Remote(const RemoteOptions& options, std::string who);

@@ -1,9 +1,9 @@
 #include "status_table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
-
-#include <fmt/format.h>
 
 namespace takt::cli {
 
@@ -22,23 +22,27 @@ std::string noteOf(const daemon::AxisReport& axis) {
 }  // namespace
 
 std::string statusTable(const daemon::StatusReport& status) {
-    std::string text = fmt::format("{}  {}  network {}  {:.3f} s, cycle {}\n", status.machine, status.phase,
-                                   status.network, status.seconds, status.cycle);
-    text += fmt::format("frames {} sent, {} lost, {} late; working counter errors {}\n", status.framesSent,
-                        status.framesLost, status.framesLate, status.workingCounterErrors);
-    if (!status.machineStop.empty()) text += fmt::format("MACHINE STOP by {}\n", status.machineStop);
+    std::string text = fmt::format("{}  {}  network {}  {:.3f} s, cycle {}\n", status.machine,
+                                   status.phase, status.network, status.seconds, status.cycle);
+    text += fmt::format("frames {} sent, {} lost, {} late; working counter errors {}\n",
+                        status.framesSent, status.framesLost, status.framesLate,
+                        status.workingCounterErrors);
+    if (!status.machineStop.empty())
+        text += fmt::format("MACHINE STOP by {}\n", status.machineStop);
     if (!status.owner.empty()) text += fmt::format("operated by {}\n", status.owner);
     std::size_t width = 4;
     for (const auto& axis : status.axes) width = std::max(width, axis.name.size());
-    text += fmt::format("\n{:<{}}  {:<18} {:>13} {:>13} {:>12} {:>10}\n", "axis", width, "state", "set", "actual",
-                        "velocity", "lag");
+    text += fmt::format("\n{:<{}}  {:<18} {:>13} {:>13} {:>12} {:>10}\n", "axis", width, "state",
+                        "set", "actual", "velocity", "lag");
     for (const auto& axis : status.axes) {
-        text += fmt::format("{:<{}}  {:<18} {:>13.4f} {:>13.4f} {:>12.3f} {:>10.4f} {:<4} {}\n", axis.name, width,
-                            axis.state, axis.set, axis.actual, axis.velocity, axis.lag, axis.unit, noteOf(axis));
+        text += fmt::format("{:<{}}  {:<18} {:>13.4f} {:>13.4f} {:>12.3f} {:>10.4f} {:<4} {}\n",
+                            axis.name, width, axis.state, axis.set, axis.actual, axis.velocity,
+                            axis.lag, axis.unit, noteOf(axis));
     }
     for (const auto& program : status.programs) {
         text += fmt::format("\nprogram '{}' {}\n", program.name, program.state);
-        for (const auto& watch : program.watches) text += fmt::format("  {} = {}\n", watch.name, watch.value);
+        for (const auto& watch : program.watches)
+            text += fmt::format("  {} = {}\n", watch.name, watch.value);
     }
     return text;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-
 #include <takt/daemon/control_messages.hpp>
 
 namespace takt::cli {

@@ -34,7 +34,9 @@ Terminal::Terminal() {
     ::tcsetattr(STDIN_FILENO, TCSANOW, &raw);
 }
 
-Terminal::~Terminal() { ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_); }
+Terminal::~Terminal() {
+    ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);
+}
 
 std::optional<Key> Terminal::key(std::chrono::milliseconds patience) {
     pollfd wait{STDIN_FILENO, POLLIN, 0};

@@ -10,8 +10,8 @@ namespace takt::cli {
 /// A key as a person means it.
 enum class Key : char { Other, Left, Right, Up, Down, Space, Quit };
 
-/// The terminal with keys delivered at once and without echo, for the lifetime of the object; ^C comes as
-/// Key::Quit.
+/// The terminal with keys delivered at once and without echo, for the lifetime of the object; ^C
+/// comes as Key::Quit.
 class Terminal {
 public:
     /// \throw std::runtime_error when stdin is no terminal

@@ -1,10 +1,9 @@
+#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "remote.hpp"
 #include "status_table.hpp"

@@ -15,7 +15,9 @@ void tell(bool on) noexcept {
 }
 }  // namespace
 
-void CycleGuard::arm(bool on) noexcept { tell(on); }
+void CycleGuard::arm(bool on) noexcept {
+    tell(on);
+}
 
 CycleGuardPause::CycleGuardPause() noexcept : wasArmed_{armed} {
     if (wasArmed_) tell(false);

@@ -1,7 +1,6 @@
-#include <takt/core/monotonic_clock.hpp>
-
 #include <cerrno>
 #include <ctime>
+#include <takt/core/monotonic_clock.hpp>
 
 namespace takt::core {
 

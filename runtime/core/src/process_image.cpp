@@ -1,6 +1,5 @@
-#include <takt/core/process_image.hpp>
-
 #include <cassert>
+#include <takt/core/process_image.hpp>
 
 namespace takt::core {
 

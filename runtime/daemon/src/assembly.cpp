@@ -1,20 +1,20 @@
 #include "assembly.hpp"
 
-#include <algorithm>
-#include <utility>
-
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <takt/core/cia402.hpp>
 #include <takt/fieldbus/pdo_layout.hpp>
+#include <utility>
 
 namespace takt::daemon {
 
 namespace {
 
 program::ProgramPtr takeLinked(std::vector<LinkedProgram>& linked, const std::string& name) {
-    const auto found = std::find_if(linked.begin(), linked.end(),
-                                    [&name](const LinkedProgram& entry) { return entry.name == name; });
+    const auto found =
+        std::find_if(linked.begin(), linked.end(),
+                     [&name](const LinkedProgram& entry) { return entry.name == name; });
     if (found == linked.end()) return nullptr;
     program::ProgramPtr program = std::move(found->program);
     linked.erase(found);
@@ -37,9 +37,10 @@ std::vector<ProgramHost> loadPrograms(const config::MachineConfig& machine,
     for (const program::ProgramParams& params : machine.programs) {
         program::ProgramPtr program = takeLinked(linked, params.name);
         if (!program && params.library.empty()) {
-            problems.push_back(fmt::format("{}: error: program '{}' has no library and is not linked in; do: add "
-                                           "library=\"…\", or run the executable that brings it",
-                                           params.origin, params.name));
+            problems.push_back(
+                fmt::format("{}: error: program '{}' has no library and is not linked in; do: add "
+                            "library=\"…\", or run the executable that brings it",
+                            params.origin, params.name));
             continue;
         }
         if (!program) {
@@ -56,7 +57,8 @@ std::vector<ProgramHost> loadPrograms(const config::MachineConfig& machine,
         program::ProgramParams params;
         params.name = rest.name;
         params.origin = machine.file;
-        programs.emplace_back(std::move(params), std::move(rest.program), machine.axes.size(), number++);
+        programs.emplace_back(std::move(params), std::move(rest.program), machine.axes.size(),
+                              number++);
     }
     return programs;
 }

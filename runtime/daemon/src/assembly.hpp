@@ -2,11 +2,10 @@
 
 #include <memory>
 #include <string>
-#include <vector>
-
 #include <takt/config/machine_config.hpp>
 #include <takt/daemon/run_options.hpp>
 #include <takt/fieldbus/ethercat/master.hpp>
+#include <vector>
 
 #include "axes.hpp"
 #include "program_host.hpp"

@@ -48,7 +48,8 @@ std::optional<ControlAnswer> AxisStation::cycle(axis::Axis& axis) noexcept {
     if (!running_) return std::nullopt;
     if (superseded_ != 0) {
         const std::uint64_t ticket = std::exchange(superseded_, 0);
-        return ControlAnswer{.ticket = ticket, .cycle = port_.view().cycle, .kind = AnswerKind::Aborted};
+        return ControlAnswer{
+            .ticket = ticket, .cycle = port_.view().cycle, .kind = AnswerKind::Aborted};
     }
 
     ControlAnswer answer;
@@ -88,18 +89,24 @@ AxisStation::Progress AxisStation::call() noexcept {
     reset_(ref_);
     if (!running_) return {};
     switch (task_.order) {
-        case Order::PowerOn: return callPower(true);
-        case Order::PowerOff: return callPower(false);
-        case Order::Reset: return progressOf(reset_);
-        case Order::Home: return progressOf(home_);
-        case Order::Inch: return progressOf(inch_);
+        case Order::PowerOn:
+            return callPower(true);
+        case Order::PowerOff:
+            return callPower(false);
+        case Order::Reset:
+            return progressOf(reset_);
+        case Order::Home:
+            return progressOf(home_);
+        case Order::Inch:
+            return progressOf(inch_);
         case Order::Heartbeat:
         case Order::Leave:
         case Order::Halt:
         case Order::MachineStop:
         case Order::ResetStop:
         case Order::ProgramStart:
-        case Order::ProgramStop: break;
+        case Order::ProgramStop:
+            break;
     }
     return {.done = true};
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-
 #include <takt/axis/axis.hpp>
 #include <takt/axis/axis_port.hpp>
 #include <takt/plcopen/plcopen.hpp>
@@ -10,7 +9,8 @@
 
 namespace takt::daemon {
 
-/// Where the operator stands at one axis: the same blocks a program uses, driven by single commands.
+/// Where the operator stands at one axis: the same blocks a program uses, driven by single
+/// commands.
 ///
 ///     if (station.begin(command)) … else busy
 ///     each cycle: if (auto answer = station.cycle(axis)) …
@@ -23,8 +23,8 @@ public:
     AxisStation(const AxisStation&) = delete;
     AxisStation& operator=(const AxisStation&) = delete;
 
-    /// rt. Starts the command with the next cycle(). \return false when another one still runs; switching
-    /// off takes its place instead
+    /// rt. Starts the command with the next cycle(). \return false when another one still runs;
+    /// switching off takes its place instead
     [[nodiscard]] bool begin(const ControlCommand& command) noexcept;
     /// rt. One cycle of the blocks. \return what there is to answer, with its ticket
     [[nodiscard]] std::optional<ControlAnswer> cycle(axis::Axis& axis) noexcept;

@@ -1,7 +1,6 @@
-#include <takt/daemon/run.hpp>
-
 #include <fmt/format.h>
 
+#include <takt/daemon/run.hpp>
 #include <takt/fieldbus/bus_timing.hpp>
 #include <takt/fieldbus/pdo_layout.hpp>
 #include <takt/wire/device_description.hpp>
@@ -17,36 +16,41 @@ double microseconds(core::Duration duration) {
 }
 
 void printNetwork(const fieldbus::NetworkParams& network, Console& console) {
-    console.line(fmt::format("{:>3} {:<16} {:<12} {:>8} {:>8}  {}", "pos", "slave", "device", "out", "in", "dc"));
+    console.line(fmt::format("{:>3} {:<16} {:<12} {:>8} {:>8}  {}", "pos", "slave", "device", "out",
+                             "in", "dc"));
     for (const fieldbus::SlaveParams& slave : network.slaves) {
-        console.line(fmt::format("{:>3} {:<16} {:<12} {:>6} B {:>6} B  {}", slave.position, slave.name,
-                                 slave.device->type,
-                                 fieldbus::processDataBytes(slave, fieldbus::Direction::Outputs),
-                                 fieldbus::processDataBytes(slave, fieldbus::Direction::Inputs),
-                                 slave.dc.enabled ? fmt::format("SYNC0 {:.1f} us", microseconds(slave.dc.sync0Cycle))
-                                                  : std::string{"off"}));
+        console.line(fmt::format(
+            "{:>3} {:<16} {:<12} {:>6} B {:>6} B  {}", slave.position, slave.name,
+            slave.device->type, fieldbus::processDataBytes(slave, fieldbus::Direction::Outputs),
+            fieldbus::processDataBytes(slave, fieldbus::Direction::Inputs),
+            slave.dc.enabled ? fmt::format("SYNC0 {:.1f} us", microseconds(slave.dc.sync0Cycle))
+                             : std::string{"off"}));
     }
     const fieldbus::BusTiming timing = fieldbus::computeTiming(network);
-    console.line(fmt::format("cycle {:.1f} us: {} frame(s), {} bytes, wire {:.1f} us, round trip {:.1f} us",
-                             microseconds(network.cycle), timing.frames, timing.frameBytes,
-                             microseconds(timing.wireTime), microseconds(timing.roundTrip)));
-    console.line(fmt::format("receive deadline {:.1f} us after the send, SYNC0 {:.1f} us after the send, "
-                             "{:.0f} % of the cycle needed",
-                             microseconds(timing.receiveDeadline), microseconds(timing.sync0AfterSend),
-                             timing.load * 100));
+    console.line(
+        fmt::format("cycle {:.1f} us: {} frame(s), {} bytes, wire {:.1f} us, round trip {:.1f} us",
+                    microseconds(network.cycle), timing.frames, timing.frameBytes,
+                    microseconds(timing.wireTime), microseconds(timing.roundTrip)));
+    console.line(
+        fmt::format("receive deadline {:.1f} us after the send, SYNC0 {:.1f} us after the send, "
+                    "{:.0f} % of the cycle needed",
+                    microseconds(timing.receiveDeadline), microseconds(timing.sync0AfterSend),
+                    timing.load * 100));
 }
 
 void printAxes(const config::MachineConfig& machine, Console& console) {
     for (const axis::AxisParams& axis : machine.axes) {
         const axis::ScalingParams& s = axis.scaling;
-        const double countsPerUnit = static_cast<double>(s.countsPerTurn) * static_cast<double>(s.gearMotor) *
-                                     static_cast<double>(s.unitsPerTurnDenominator) /
-                                     (static_cast<double>(s.gearLoad) * static_cast<double>(s.unitsPerTurnNumerator));
-        console.line(fmt::format("axis {}: slave {} ({}), {:.6g} counts/{}, {:.6g} {}/s = {:.6g} counts per cycle",
-                                 axis.name, axis.drive.slave, axis.drive.profile, countsPerUnit, axis.unit,
-                                 axis.limits.velocity.count(), axis.unit,
-                                 axis.limits.velocity.count() * countsPerUnit *
-                                     std::chrono::duration<double>{machine.network.cycle}.count()));
+        const double countsPerUnit =
+            static_cast<double>(s.countsPerTurn) * static_cast<double>(s.gearMotor) *
+            static_cast<double>(s.unitsPerTurnDenominator) /
+            (static_cast<double>(s.gearLoad) * static_cast<double>(s.unitsPerTurnNumerator));
+        console.line(fmt::format(
+            "axis {}: slave {} ({}), {:.6g} counts/{}, {:.6g} {}/s = {:.6g} counts per cycle",
+            axis.name, axis.drive.slave, axis.drive.profile, countsPerUnit, axis.unit,
+            axis.limits.velocity.count(), axis.unit,
+            axis.limits.velocity.count() * countsPerUnit *
+                std::chrono::duration<double>{machine.network.cycle}.count()));
     }
 }
 
@@ -55,7 +59,8 @@ void printAxes(const config::MachineConfig& machine, Console& console) {
 int check(const RunOptions& options) {
     Console console{options.quiet};
     if (!std::filesystem::is_regular_file(options.machine)) {
-        console.error(fmt::format("{}: no such file; allowed: the path of a machine file", options.machine.string()));
+        console.error(fmt::format("{}: no such file; allowed: the path of a machine file",
+                                  options.machine.string()));
         return static_cast<int>(ExitCode::CouldNotRun);
     }
     const auto machine = loadMachine(options, {}, console);

@@ -47,7 +47,8 @@ void CommandDesk::takeAll(core::CycleNumber cycle, bool operating) noexcept {
     }
 }
 
-void CommandDesk::take(const ControlCommand& command, core::CycleNumber cycle, bool operating) noexcept {
+void CommandDesk::take(const ControlCommand& command, core::CycleNumber cycle,
+                       bool operating) noexcept {
     if (record_ && !parts_.rings.taken.push({cycle, command})) {
         parts_.rings.takenLost.fetch_add(1, std::memory_order_relaxed);
     }
@@ -59,9 +60,12 @@ void CommandDesk::take(const ControlCommand& command, core::CycleNumber cycle, b
         parts_.rings.events.add(commandTaken(cycle, command));
     }
     if (verdict.pending || command.ticket == 0) return;
-    static_cast<void>(parts_.rings.answers.push(
-        {command.ticket, cycle, refused ? AnswerKind::Refused : AnswerKind::Done, verdict.refusal, {},
-         verdict.detail}));
+    static_cast<void>(parts_.rings.answers.push({command.ticket,
+                                                 cycle,
+                                                 refused ? AnswerKind::Refused : AnswerKind::Done,
+                                                 verdict.refusal,
+                                                 {},
+                                                 verdict.detail}));
 }
 
 CommandDesk::Verdict CommandDesk::execute(const ControlCommand& command, core::CycleNumber cycle,
@@ -75,8 +79,10 @@ CommandDesk::Verdict CommandDesk::execute(const ControlCommand& command, core::C
         case Order::Halt:
             letGoAll();
             return {};
-        case Order::ProgramStop: return stopProgram(command);
-        default: break;
+        case Order::ProgramStop:
+            return stopProgram(command);
+        default:
+            break;
     }
     lastHeartbeat_ = cycle;
     if (command.order == Order::Heartbeat) return {};

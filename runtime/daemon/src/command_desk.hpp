@@ -5,10 +5,9 @@
 #include <cstdint>
 #include <deque>
 #include <span>
-#include <vector>
-
 #include <takt/core/spsc_ring.hpp>
 #include <takt/record/event_log.hpp>
+#include <vector>
 
 #include "axes.hpp"
 #include "axis_station.hpp"
@@ -27,9 +26,9 @@ struct ControlRings {
     record::EventLog events{4096};
 };
 
-/// Takes the operator's commands into the cycle, at most a few in each, and stamps them with it. Judges
-/// them first: a refused one changes nothing. What moves for the operator stops when he gives no sign of
-/// life for HeartbeatTime.
+/// Takes the operator's commands into the cycle, at most a few in each, and stamps them with it.
+/// Judges them first: a refused one changes nothing. What moves for the operator stops when he
+/// gives no sign of life for HeartbeatTime.
 class CommandDesk {
 public:
     static constexpr core::Duration HeartbeatTime = std::chrono::milliseconds{100};
@@ -41,10 +40,12 @@ public:
         MachineStop& machineStop;
         ControlRings& rings;
     };
-    /// \param replay commands in the order of their cycles; when there are any, those from the ring are
+    /// \param replay commands in the order of their cycles; when there are any, those from the ring
+    /// are
     ///        refused but for stopping
     /// \param record what was taken goes to the ring `taken`
-    CommandDesk(const Parts& parts, core::Duration cycle, std::vector<TakenCommand> replay, bool record);
+    CommandDesk(const Parts& parts, core::Duration cycle, std::vector<TakenCommand> replay,
+                bool record);
 
     /// rt. One cycle, after the programs. \param operating motion may be asked for
     void cycle(core::CycleNumber cycle, bool operating) noexcept;

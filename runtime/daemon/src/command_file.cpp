@@ -1,12 +1,12 @@
 #include "command_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
-
-#include <fmt/format.h>
 
 namespace takt::daemon {
 
@@ -30,18 +30,22 @@ std::vector<std::string> wordsOf(const std::string& line) {
 }
 
 /// \return what is wrong with the line; empty when it is good
-std::string readLine(const std::vector<std::string>& words, const ControlNames& names, TakenCommand& taken) {
-    if (words.size() < 2 || !parse(words[0], taken.cycle)) return "expected: CYCLE ORDER [TARGET] [NUMBERS]";
+std::string readLine(const std::vector<std::string>& words, const ControlNames& names,
+                     TakenCommand& taken) {
+    if (words.size() < 2 || !parse(words[0], taken.cycle))
+        return "expected: CYCLE ORDER [TARGET] [NUMBERS]";
     const auto order = orderOf(words[1]);
     if (!order) return fmt::format("there is no order '{}'", words[1]);
     taken.command.order = *order;
     std::size_t next = 2;
     if (const OrderTarget target = targetOf(*order); target != OrderTarget::None) {
         const auto& known = namesOf(target, names);
-        if (words.size() <= next) return fmt::format("the target is missing; allowed: {}", fmt::join(known, ", "));
+        if (words.size() <= next)
+            return fmt::format("the target is missing; allowed: {}", fmt::join(known, ", "));
         const auto found = std::find(known.begin(), known.end(), words[next]);
         if (found == known.end()) {
-            return fmt::format("there is no '{}'; allowed: {}", words[next], fmt::join(known, ", "));
+            return fmt::format("there is no '{}'; allowed: {}", words[next],
+                               fmt::join(known, ", "));
         }
         taken.command.target = static_cast<std::uint16_t>(found - known.begin());
         ++next;
@@ -49,7 +53,8 @@ std::string readLine(const std::vector<std::string>& words, const ControlNames& 
     if (*order == Order::Inch) {
         const bool good = words.size() >= next + 2 && parse(words[next], taken.command.distance) &&
                           parse(words[next + 1], taken.command.velocity) &&
-                          std::isfinite(taken.command.distance) && std::isfinite(taken.command.velocity);
+                          std::isfinite(taken.command.distance) &&
+                          std::isfinite(taken.command.velocity);
         if (!good) return "expected: distance and velocity";
         next += 2;
     }
@@ -65,7 +70,8 @@ std::string formatCommand(const TakenCommand& taken, const ControlNames& names) 
         const auto& known = namesOf(target, names);
         line += " " + (command.target < known.size() ? known[command.target] : std::string{"?"});
     }
-    if (command.order == Order::Inch) line += fmt::format(" {} {}", command.distance, command.velocity);
+    if (command.order == Order::Inch)
+        line += fmt::format(" {} {}", command.distance, command.velocity);
     return line + "\n";
 }
 
@@ -84,8 +90,11 @@ std::vector<TakenCommand> readCommands(const std::filesystem::path& file, const 
         if (words.empty() || words[0][0] == '#') continue;
         TakenCommand taken;
         std::string wrong = readLine(words, names, taken);
-        const bool backwards = wrong.empty() && !commands.empty() && taken.cycle < commands.back().cycle;
-        if (backwards) wrong = fmt::format("cycle {} comes after cycle {}", taken.cycle, commands.back().cycle);
+        const bool backwards =
+            wrong.empty() && !commands.empty() && taken.cycle < commands.back().cycle;
+        if (backwards)
+            wrong =
+                fmt::format("cycle {} comes after cycle {}", taken.cycle, commands.back().cycle);
         if (wrong.empty()) {
             commands.push_back(taken);
         } else {

@@ -9,8 +9,8 @@
 
 namespace takt::daemon {
 
-/// One line of a command file with its end: `1234 inch X 0.1 5`, cycle, order, target, numbers. Numbers in
-/// their shortest form that reads back exactly.
+/// One line of a command file with its end: `1234 inch X 0.1 5`, cycle, order, target, numbers.
+/// Numbers in their shortest form that reads back exactly.
 [[nodiscard]] std::string formatCommand(const TakenCommand& taken, const ControlNames& names);
 
 /// Reads a command file; blank lines and lines that begin with '#' are skipped.

@@ -1,10 +1,9 @@
 #include "console.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
-
-#include <fmt/format.h>
 
 namespace takt::daemon {
 

@@ -5,8 +5,8 @@
 
 namespace takt::daemon {
 
-/// Where a run speaks to a person: lines, and on a terminal one line that is written over. In a pipe the
-/// progress is left out.
+/// Where a run speaks to a person: lines, and on a terminal one line that is written over. In a
+/// pipe the progress is left out.
 class Console {
 public:
     explicit Console(bool quiet);

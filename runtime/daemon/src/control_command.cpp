@@ -29,7 +29,9 @@ constexpr std::array<OrderInfo, OrderCount> Orders{{
 
 }  // namespace
 
-std::string_view name(Order order) noexcept { return Orders[static_cast<std::size_t>(order)].name; }
+std::string_view name(Order order) noexcept {
+    return Orders[static_cast<std::size_t>(order)].name;
+}
 
 std::optional<Order> orderOf(std::string_view name) noexcept {
     for (std::size_t i = 0; i < Orders.size(); ++i) {
@@ -38,6 +40,8 @@ std::optional<Order> orderOf(std::string_view name) noexcept {
     return std::nullopt;
 }
 
-OrderTarget targetOf(Order order) noexcept { return Orders[static_cast<std::size_t>(order)].target; }
+OrderTarget targetOf(Order order) noexcept {
+    return Orders[static_cast<std::size_t>(order)].target;
+}
 
 }  // namespace takt::daemon

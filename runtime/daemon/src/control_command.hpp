@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-
 #include <takt/axis/error.hpp>
 #include <takt/core/time.hpp>
 
@@ -12,14 +11,14 @@ namespace takt::daemon {
 
 /// What may be asked of a running machine. Each is one fixed record in a ring, taken by the cycle.
 enum class Order : std::uint8_t {
-    Heartbeat,     ///< the operator is still there
-    Leave,         ///< the operator is gone: what moves for him stops
-    PowerOn,       ///< target: axis
+    Heartbeat,  ///< the operator is still there
+    Leave,      ///< the operator is gone: what moves for him stops
+    PowerOn,    ///< target: axis
     PowerOff,
     Reset,
     Home,
-    Inch,          ///< one MC_Inch; distance signed
-    Halt,          ///< what moves for the operator stops
+    Inch,  ///< one MC_Inch; distance signed
+    Halt,  ///< what moves for the operator stops
     MachineStop,
     ResetStop,
     ProgramStart,  ///< target: program
@@ -37,10 +36,10 @@ enum class OrderTarget : std::uint8_t { None, Axis, Program };
 
 struct ControlCommand {
     Order order{Order::Heartbeat};
-    std::uint16_t target{0};   ///< index of the axis or program
-    std::uint64_t ticket{0};   ///< whom to answer; 0 = nobody
-    double distance{0.0};      ///< Inch: u, signed
-    double velocity{0.0};      ///< Inch: u/s
+    std::uint16_t target{0};  ///< index of the axis or program
+    std::uint64_t ticket{0};  ///< whom to answer; 0 = nobody
+    double distance{0.0};     ///< Inch: u, signed
+    double velocity{0.0};     ///< Inch: u/s
 };
 
 /// A command and the cycle that took it.
@@ -52,18 +51,18 @@ struct TakenCommand {
 /// Why a command was refused; it has then changed nothing.
 enum class Refusal : std::uint8_t {
     None,
-    NotOperating,    ///< the network is not in OP, or the run is ending
+    NotOperating,  ///< the network is not in OP, or the run is ending
     UnknownTarget,
     NotFinite,
-    HeldByProgram,   ///< `detail` is the program
-    Busy,            ///< the operator's last command for this axis still runs
-    Block,           ///< the block's error is in `error`
-    StopActive,      ///< what stopped the machine is still there; `detail` is the input
+    HeldByProgram,  ///< `detail` is the program
+    Busy,           ///< the operator's last command for this axis still runs
+    Block,          ///< the block's error is in `error`
+    StopActive,     ///< what stopped the machine is still there; `detail` is the input
     NotStopped,
     ProgramEnded,
     ProgramRunning,
-    OperatorMoves,   ///< an axis moves for the operator; `detail` is the axis
-    Replaying,       ///< a command file is being replayed
+    OperatorMoves,  ///< an axis moves for the operator; `detail` is the axis
+    Replaying,      ///< a command file is being replayed
 };
 
 enum class AnswerKind : std::uint8_t { Accepted, Refused, Done, Aborted, Failed };

@@ -1,9 +1,7 @@
-#include <takt/daemon/control_messages.hpp>
-
 #include <array>
 #include <cmath>
-
 #include <nlohmann/json.hpp>
+#include <takt/daemon/control_messages.hpp>
 
 namespace takt::daemon {
 
@@ -11,7 +9,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 5> KindNames{"accepted", "refused", "done", "aborted", "failed"};
+constexpr std::array<std::string_view, 5> KindNames{"accepted", "refused", "done", "aborted",
+                                                    "failed"};
 
 /// The text as an object; a number that JSON cannot hold never gets this far.
 std::optional<Json> parseObject(std::string_view line, std::string& error) {
@@ -33,13 +32,16 @@ public:
     Members(const Json& json, std::string& error) : json_{json}, error_{error} {}
 
     void take(const char* key, std::string& value) {
-        if (const Json* found = find(key, &Json::is_string, "a text")) value = found->get<std::string>();
+        if (const Json* found = find(key, &Json::is_string, "a text"))
+            value = found->get<std::string>();
     }
     void take(const char* key, double& value) {
-        if (const Json* found = find(key, &Json::is_number, "a number")) value = found->get<double>();
+        if (const Json* found = find(key, &Json::is_number, "a number"))
+            value = found->get<double>();
     }
     void take(const char* key, bool& value) {
-        if (const Json* found = find(key, &Json::is_boolean, "true or false")) value = found->get<bool>();
+        if (const Json* found = find(key, &Json::is_boolean, "true or false"))
+            value = found->get<bool>();
     }
     void take(const char* key, std::uint64_t& value) {
         if (const Json* found = find(key, &Json::is_number_unsigned, "a whole number")) {
@@ -51,8 +53,12 @@ public:
             value = found->get<std::int64_t>();
         }
     }
-    [[nodiscard]] const Json* array(const char* key) { return find(key, &Json::is_array, "a list"); }
-    [[nodiscard]] const Json* object(const char* key) { return find(key, &Json::is_object, "an object"); }
+    [[nodiscard]] const Json* array(const char* key) {
+        return find(key, &Json::is_array, "a list");
+    }
+    [[nodiscard]] const Json* object(const char* key) {
+        return find(key, &Json::is_object, "an object");
+    }
     [[nodiscard]] bool good() const { return error_.empty(); }
 
 private:
@@ -69,15 +75,23 @@ private:
 };
 
 /// JSON knows no infinity; null says that there is no number.
-Json numberOf(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json numberOf(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json jsonOf(const AxisReport& axis) {
-    return {{"name", axis.name},         {"unit", axis.unit},
-            {"state", axis.state},       {"set", numberOf(axis.set)},
-            {"actual", numberOf(axis.actual)}, {"velocity", numberOf(axis.velocity)},
-            {"lag", numberOf(axis.lag)}, {"powered", axis.powered},
-            {"homed", axis.homed},       {"needsEnableEdge", axis.needsEnableEdge},
-            {"error", axis.error},       {"holder", axis.holder}};
+    return {{"name", axis.name},
+            {"unit", axis.unit},
+            {"state", axis.state},
+            {"set", numberOf(axis.set)},
+            {"actual", numberOf(axis.actual)},
+            {"velocity", numberOf(axis.velocity)},
+            {"lag", numberOf(axis.lag)},
+            {"powered", axis.powered},
+            {"homed", axis.homed},
+            {"needsEnableEdge", axis.needsEnableEdge},
+            {"error", axis.error},
+            {"holder", axis.holder}};
 }
 
 AxisReport axisOf(const Json& json, std::string& error) {
@@ -111,7 +125,8 @@ ProgramReport programOf(const Json& json, std::string& error) {
     members.take("state", program.state);
     if (const Json* watches = members.object("watches")) {
         for (const auto& [name, value] : watches->items()) {
-            program.watches.push_back({name, value.is_number() ? value.get<double>() : std::nan("")});
+            program.watches.push_back(
+                {name, value.is_number() ? value.get<double>() : std::nan("")});
         }
     }
     return program;
@@ -133,7 +148,8 @@ Json jsonOf(const StatusReport& status) {
               {"axes", Json::array()},
               {"programs", Json::array()}};
     for (const AxisReport& axis : status.axes) json["axes"].push_back(jsonOf(axis));
-    for (const ProgramReport& program : status.programs) json["programs"].push_back(jsonOf(program));
+    for (const ProgramReport& program : status.programs)
+        json["programs"].push_back(jsonOf(program));
     return json;
 }
 

@@ -1,7 +1,6 @@
 // What the control server tells of the machine.
-#include <unistd.h>
-
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "control_server.hpp"
 
@@ -77,7 +76,8 @@ std::vector<EventReport> ControlServer::eventsAfter(std::uint64_t number) const 
 }
 
 double ControlServer::secondsOf(core::CycleNumber cycle) const {
-    return static_cast<double>(cycle) * std::chrono::duration<double>{parts_.machine.network.cycle}.count();
+    return static_cast<double>(cycle) *
+           std::chrono::duration<double>{parts_.machine.network.cycle}.count();
 }
 
 std::string ControlServer::ownerName() const {

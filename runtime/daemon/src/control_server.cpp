@@ -1,5 +1,6 @@
 #include "control_server.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -9,8 +10,6 @@
 #include <cerrno>
 #include <csignal>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "command_file.hpp"
 #include "realtime_thread.hpp"
@@ -25,7 +24,9 @@ using namespace std::chrono_literals;
 constexpr std::chrono::milliseconds LookAfter = 5ms;
 constexpr std::size_t MostTickets = 256;
 
-ReplyKind kindOf(AnswerKind kind) noexcept { return static_cast<ReplyKind>(kind); }
+ReplyKind kindOf(AnswerKind kind) noexcept {
+    return static_cast<ReplyKind>(kind);
+}
 static_assert(static_cast<int>(ReplyKind::Failed) == static_cast<int>(AnswerKind::Failed));
 
 /// Signals are for the thread that runs the machine.
@@ -54,7 +55,9 @@ ControlServer::ControlServer(const Parts& parts, const std::filesystem::path& so
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-ControlServer::~ControlServer() { static_cast<void>(finish()); }
+ControlServer::~ControlServer() {
+    static_cast<void>(finish());
+}
 
 bool ControlServer::finish() {
     ending_ = true;
@@ -101,14 +104,17 @@ void ControlServer::waitForClients() {
 }
 
 void ControlServer::acceptClients() {
-    const int connection = ::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    const int connection =
+        ::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (connection < 0) return;
     const Peer peer = peerOf(connection);
     if (!peer.allowed || clients_.size() >= MostClients) {
         ControlReply reply{.kind = ReplyKind::Refused};
-        reply.error = peer.allowed ? "too many clients" : "only the owner of this machine and its group may connect";
+        reply.error = peer.allowed ? "too many clients"
+                                   : "only the owner of this machine and its group may connect";
         const std::string line = encode(reply);
-        static_cast<void>(::send(connection, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT));
+        static_cast<void>(
+            ::send(connection, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT));
         ::close(connection);
         return;
     }
@@ -125,7 +131,8 @@ void ControlServer::receive(std::uint64_t number, Client& client) {
     if (count <= 0) return;
     client.received.append(buffer.data(), static_cast<std::size_t>(count));
     std::size_t begin = 0;
-    for (std::size_t end = 0; (end = client.received.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    for (std::size_t end = 0; (end = client.received.find('\n', begin)) != std::string::npos;
+         begin = end + 1) {
         handle(number, client, std::string_view{client.received}.substr(begin, end - begin));
     }
     client.received.erase(0, begin);
@@ -154,20 +161,24 @@ void ControlServer::handle(std::uint64_t number, Client& client, std::string_vie
 }
 
 void ControlServer::refuse(Client& client, const ControlRequest& request, std::string why) {
-    client.unsent += encode(ControlReply{.id = request.id, .kind = ReplyKind::Refused, .error = std::move(why)});
+    client.unsent +=
+        encode(ControlReply{.id = request.id, .kind = ReplyKind::Refused, .error = std::move(why)});
 }
 
 void ControlServer::order(std::uint64_t number, Client& client, const ControlRequest& request) {
     ControlCommand command;
-    if (std::string why = commandOf(request, command); !why.empty()) return refuse(client, request, why);
+    if (std::string why = commandOf(request, command); !why.empty())
+        return refuse(client, request, why);
     const bool isHeartbeat = command.order == Order::Heartbeat;
     // A heartbeat of somebody who does not operate means nothing; anybody may stop the machine.
     if (isHeartbeat && owner_ != number) return;
     if (command.order != Order::MachineStop) {
-        if (std::string why = claim(number, client); !why.empty()) return refuse(client, request, why);
+        if (std::string why = claim(number, client); !why.empty())
+            return refuse(client, request, why);
     }
     if (!isHeartbeat) {
-        if (tickets_.size() >= MostTickets) return refuse(client, request, "too many commands at once");
+        if (tickets_.size() >= MostTickets)
+            return refuse(client, request, "too many commands at once");
         command.ticket = ++lastTicket_;
         tickets_[command.ticket] = {number, request.id, command.order, command.target};
     }
@@ -198,7 +209,8 @@ std::string ControlServer::commandOf(const ControlRequest& request, ControlComma
 std::string ControlServer::claim(std::uint64_t number, const Client& client) {
     const auto now = std::chrono::steady_clock::now();
     if (owner_ != 0 && owner_ != number) {
-        if (now - ownerSeen_ <= OwnerTime) return fmt::format("the machine is operated by {}", ownerName());
+        if (now - ownerSeen_ <= OwnerTime)
+            return fmt::format("the machine is operated by {}", ownerName());
         leave();
     }
     if (leavePending_) return "busy: the operator before has just left";
@@ -217,7 +229,8 @@ void ControlServer::takeAnswers() {
         if (answer.kind != AnswerKind::Accepted) tickets_.erase(found);
         const auto client = clients_.find(ticket.client);
         if (client == clients_.end()) continue;
-        ControlReply reply{.id = ticket.request, .kind = kindOf(answer.kind), .error = {}, .cycle = answer.cycle};
+        ControlReply reply{
+            .id = ticket.request, .kind = kindOf(answer.kind), .error = {}, .cycle = answer.cycle};
         if (answer.error != axis::ErrorId::None) {
             const axis::ErrorInfo& info = axis::errorInfo(answer.error);
             reply.error = fmt::format("{}: {} {}", info.name, info.text, info.remedy);
@@ -232,7 +245,8 @@ void ControlServer::takeAnswers() {
 void ControlServer::takeEvents() {
     record::Event event;
     while (parts_.control.rings().events.next(event)) {
-        events_.push_back({++lastEvent_, event.cycle, secondsOf(event.cycle), text(event, parts_.control.names())});
+        events_.push_back({++lastEvent_, event.cycle, secondsOf(event.cycle),
+                           text(event, parts_.control.names())});
         if (events_.size() > KeptEvents) events_.pop_front();
     }
 }
@@ -265,7 +279,8 @@ void ControlServer::leave() {
 void ControlServer::sendAll() {
     for (auto& [number, client] : clients_) {
         if (client.unsent.empty()) continue;
-        const ssize_t sent = ::send(client.connection, client.unsent.data(), client.unsent.size(), MSG_NOSIGNAL);
+        const ssize_t sent =
+            ::send(client.connection, client.unsent.data(), client.unsent.size(), MSG_NOSIGNAL);
         if (sent > 0) client.unsent.erase(0, static_cast<std::size_t>(sent));
         const bool broken = sent < 0 && errno != EAGAIN && errno != EINTR;
         if (broken || client.unsent.size() > MostUnsent) client.gone = true;

@@ -8,27 +8,29 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <thread>
-#include <vector>
-
 #include <takt/daemon/control_messages.hpp>
 #include <takt/daemon/control_socket.hpp>
 #include <takt/record/output_file.hpp>
+#include <thread>
+#include <vector>
 
 #include "machine_control.hpp"
 
 namespace takt::daemon {
 
-/// Serves the control socket on a thread of its own: status and events for everybody who may connect,
-/// commands for one owner at a time. It reaches the cycle through rings and sequence locks only.
+/// Serves the control socket on a thread of its own: status and events for everybody who may
+/// connect, commands for one owner at a time. It reaches the cycle through rings and sequence locks
+/// only.
 ///
-/// Owner is who commands first, until he leaves or is silent for OwnerTime. Stopping is open to all.
+/// Owner is who commands first, until he leaves or is silent for OwnerTime. Stopping is open to
+/// all.
 class ControlServer {
 public:
     static constexpr std::chrono::seconds OwnerTime{1};
     static constexpr std::size_t MostClients = 16;
-    static constexpr std::size_t MostLine = 4096;       ///< of a request
-    static constexpr std::size_t MostUnsent = 1U << 20U;  ///< then a client that does not read is dropped
+    static constexpr std::size_t MostLine = 4096;  ///< of a request
+    static constexpr std::size_t MostUnsent =
+        1U << 20U;  ///< then a client that does not read is dropped
     static constexpr std::size_t KeptEvents = 2000;
 
     struct Parts {
@@ -36,8 +38,8 @@ public:
         std::span<const ProgramHost> programs;  ///< their lists of watches; not their state
         MachineControl& control;
     };
-    /// Opens the socket and begins to serve. \param commandFile taken commands are written there; empty:
-    /// nowhere. \throw std::runtime_error naming what cannot be opened
+    /// Opens the socket and begins to serve. \param commandFile taken commands are written there;
+    /// empty: nowhere. \throw std::runtime_error naming what cannot be opened
     ControlServer(const Parts& parts, const std::filesystem::path& socket,
                   const std::filesystem::path& commandFile);
     ~ControlServer();
@@ -45,8 +47,8 @@ public:
     ControlServer& operator=(const ControlServer&) = delete;
 
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return socket_.path(); }
-    /// Ends the thread; the rest of events and commands is taken over. \return false when the command file
-    /// is not complete
+    /// Ends the thread; the rest of events and commands is taken over. \return false when the
+    /// command file is not complete
     bool finish();
 
 private:
@@ -72,7 +74,8 @@ private:
     void receive(std::uint64_t number, Client& client);
     void handle(std::uint64_t number, Client& client, std::string_view line);
     void order(std::uint64_t number, Client& client, const ControlRequest& request);
-    [[nodiscard]] std::string commandOf(const ControlRequest& request, ControlCommand& command) const;
+    [[nodiscard]] std::string commandOf(const ControlRequest& request,
+                                        ControlCommand& command) const;
     [[nodiscard]] std::string claim(std::uint64_t number, const Client& client);
     void refuse(Client& client, const ControlRequest& request, std::string why);
     void takeAnswers();

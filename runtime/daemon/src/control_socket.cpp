@@ -1,6 +1,5 @@
-#include <takt/daemon/control_socket.hpp>
-
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -13,8 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
-
-#include <fmt/format.h>
+#include <takt/daemon/control_socket.hpp>
 
 namespace takt::daemon {
 
@@ -28,7 +26,9 @@ constexpr int Backlog = 8;
     throw std::runtime_error{fmt::format("control socket {}: {}", path.string(), why)};
 }
 
-fs::path temporaryFolder() { return fmt::format("/tmp/takt-{}", ::geteuid()); }
+fs::path temporaryFolder() {
+    return fmt::format("/tmp/takt-{}", ::geteuid());
+}
 
 fs::path runtimeFolder() {
     // Before any thread exists, and only read.
@@ -47,12 +47,16 @@ void makeFolder(const fs::path& folder) {
     if (::lstat(folder.c_str(), &info) != 0) refuse(folder, std::strerror(errno));
     const bool ours = S_ISDIR(info.st_mode) && (info.st_uid == ::geteuid() || info.st_uid == 0);
     if (!ours || (info.st_mode & S_IWOTH) != 0) {
-        refuse(folder, "not a folder of this user, or others may write to it; do: remove it or name another "
-                       "place with --socket");
+        refuse(
+            folder,
+            "not a folder of this user, or others may write to it; do: remove it or name another "
+            "place with --socket");
     }
 }
 
-fs::path lockOf(const fs::path& socket) { return socket.string() + ".lock"; }
+fs::path lockOf(const fs::path& socket) {
+    return socket.string() + ".lock";
+}
 
 /// \return the locked file, -1 when another process has it
 int lockFile(const fs::path& path) {
@@ -125,7 +129,8 @@ void ControlSocket::listen() {
     address.sun_family = AF_UNIX;
     const std::string path = path_.string();
     if (path.size() >= sizeof(address.sun_path)) {
-        refuse(path_, fmt::format("the path is longer than {} characters", sizeof(address.sun_path) - 1));
+        refuse(path_,
+               fmt::format("the path is longer than {} characters", sizeof(address.sun_path) - 1));
     }
     std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
     socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -154,7 +159,8 @@ Peer peerOf(int connection) noexcept {
     socklen_t size = sizeof(credentials);
     if (::getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0) return {};
     Peer peer{.pid = credentials.pid};
-    peer.allowed = credentials.uid == ::geteuid() || credentials.uid == 0 || credentials.gid == ::getegid();
+    peer.allowed =
+        credentials.uid == ::geteuid() || credentials.uid == 0 || credentials.gid == ::getegid();
     if (peer.allowed) return peer;
     std::array<gid_t, 256> groups{};
     size = sizeof(groups);

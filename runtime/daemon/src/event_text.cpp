@@ -1,8 +1,8 @@
 #include "event_text.hpp"
 
-#include <array>
-
 #include <fmt/format.h>
+
+#include <array>
 
 namespace takt::daemon {
 
@@ -32,9 +32,12 @@ std::string nameIn(const std::vector<std::string>& names, std::size_t index) {
 
 std::string targetName(Order order, std::uint16_t target, const ControlNames& names) {
     switch (targetOf(order)) {
-        case OrderTarget::None: return {};
-        case OrderTarget::Axis: return " " + nameIn(names.axes, target);
-        case OrderTarget::Program: return " " + nameIn(names.programs, target);
+        case OrderTarget::None:
+            return {};
+        case OrderTarget::Axis:
+            return " " + nameIn(names.axes, target);
+        case OrderTarget::Program:
+            return " " + nameIn(names.programs, target);
     }
     return {};
 }
@@ -60,7 +63,8 @@ std::string textOfCommand(const record::Event& event, const ControlNames& names)
     }
     if (order == Order::Inch) {
         const std::string unit = nameIn(names.units, target);
-        words += fmt::format(" by {:+g} {} at {:g} {}/s", event.numbers[2], unit, event.numbers[3], unit);
+        words += fmt::format(" by {:+g} {} at {:g} {}/s", event.numbers[2], unit, event.numbers[3],
+                             unit);
     }
     return words;
 }
@@ -74,7 +78,8 @@ record::Event axisChanged(core::CycleNumber cycle, std::uint16_t axis, axis::Axi
                           axis::AxisState to) noexcept {
     return event(cycle, EventId::AxisChanged, axis, {number(from), number(to)});
 }
-record::Event axisFailed(core::CycleNumber cycle, std::uint16_t axis, const axis::ErrorRecord& error) noexcept {
+record::Event axisFailed(core::CycleNumber cycle, std::uint16_t axis,
+                         const axis::ErrorRecord& error) noexcept {
     const double packed = number(error.id) * DriveErrorSpan + error.driveError;
     return event(cycle, EventId::AxisFailed, axis,
                  {packed, error.numbers[0], error.numbers[1], error.numbers[2]});
@@ -94,13 +99,14 @@ record::Event commandTaken(core::CycleNumber cycle, const ControlCommand& comman
                  {number(command.order), static_cast<double>(command.target), command.distance,
                   command.velocity});
 }
-record::Event commandRefused(core::CycleNumber cycle, const ControlCommand& command, Refusal refusal,
-                             std::uint16_t detail) noexcept {
+record::Event commandRefused(core::CycleNumber cycle, const ControlCommand& command,
+                             Refusal refusal, std::uint16_t detail) noexcept {
     return event(cycle, EventId::CommandRefused, 0,
                  {number(command.order), static_cast<double>(command.target), number(refusal),
                   static_cast<double>(detail)});
 }
-record::Event stationFailed(core::CycleNumber cycle, std::uint16_t axis, axis::ErrorId error) noexcept {
+record::Event stationFailed(core::CycleNumber cycle, std::uint16_t axis,
+                            axis::ErrorId error) noexcept {
     return event(cycle, EventId::StationFailed, axis, {number(error)});
 }
 record::Event operatorLost(core::CycleNumber cycle, std::uint16_t axis) noexcept {
@@ -109,12 +115,18 @@ record::Event operatorLost(core::CycleNumber cycle, std::uint16_t axis) noexcept
 
 const char* name(ProgramPhase phase, bool held) noexcept {
     switch (phase) {
-        case ProgramPhase::Waiting: return held ? "stopped" : "waiting";
-        case ProgramPhase::Running: return held ? "stopped" : "running";
-        case ProgramPhase::Finished: return "finished";
-        case ProgramPhase::Failed: return "failed";
-        case ProgramPhase::Threw: return "threw";
-        case ProgramPhase::Abandoned: return "abandoned";
+        case ProgramPhase::Waiting:
+            return held ? "stopped" : "waiting";
+        case ProgramPhase::Running:
+            return held ? "stopped" : "running";
+        case ProgramPhase::Finished:
+            return "finished";
+        case ProgramPhase::Failed:
+            return "failed";
+        case ProgramPhase::Threw:
+            return "threw";
+        case ProgramPhase::Abandoned:
+            return "abandoned";
     }
     return "?";
 }
@@ -122,23 +134,35 @@ const char* name(ProgramPhase phase, bool held) noexcept {
 std::string explain(Refusal refusal, Order order, std::uint16_t target, std::uint16_t detail,
                     const ControlNames& names) {
     switch (refusal) {
-        case Refusal::None: return "not refused";
-        case Refusal::NotOperating: return "the network is not in OP, or the run is ending";
-        case Refusal::UnknownTarget: return fmt::format("there is no{}", targetName(order, target, names));
-        case Refusal::NotFinite: return "a number is not finite";
+        case Refusal::None:
+            return "not refused";
+        case Refusal::NotOperating:
+            return "the network is not in OP, or the run is ending";
+        case Refusal::UnknownTarget:
+            return fmt::format("there is no{}", targetName(order, target, names));
+        case Refusal::NotFinite:
+            return "a number is not finite";
         case Refusal::HeldByProgram:
-            return fmt::format("axis{} is held by program '{}'; do: stop the program, or run with --manual",
-                               targetName(order, target, names), nameIn(names.programs, detail));
-        case Refusal::Busy: return "the last command for this axis still runs";
-        case Refusal::Block: return "the block refused it";
+            return fmt::format(
+                "axis{} is held by program '{}'; do: stop the program, or run with --manual",
+                targetName(order, target, names), nameIn(names.programs, detail));
+        case Refusal::Busy:
+            return "the last command for this axis still runs";
+        case Refusal::Block:
+            return "the block refused it";
         case Refusal::StopActive:
-            return fmt::format("input '{}' still asks for the stop", nameIn(names.stopInputs, detail));
-        case Refusal::NotStopped: return "the machine is not stopped";
-        case Refusal::ProgramEnded: return "the program has ended";
-        case Refusal::ProgramRunning: return "the program runs already";
+            return fmt::format("input '{}' still asks for the stop",
+                               nameIn(names.stopInputs, detail));
+        case Refusal::NotStopped:
+            return "the machine is not stopped";
+        case Refusal::ProgramEnded:
+            return "the program has ended";
+        case Refusal::ProgramRunning:
+            return "the program runs already";
         case Refusal::OperatorMoves:
             return fmt::format("axis {} moves for the operator", nameIn(names.axes, detail));
-        case Refusal::Replaying: return "a command file is being replayed";
+        case Refusal::Replaying:
+            return "a command file is being replayed";
     }
     return "?";
 }
@@ -147,24 +171,31 @@ std::string text(const record::Event& event, const ControlNames& names) {
     const auto axis = [&] { return nameIn(names.axes, event.source); };
     switch (static_cast<EventId>(event.id)) {
         case EventId::NetworkChanged:
-            return fmt::format("network {}", fieldbus::ethercat::name(as<NetworkState>(event.numbers[0])));
+            return fmt::format("network {}",
+                               fieldbus::ethercat::name(as<NetworkState>(event.numbers[0])));
         case EventId::AxisChanged:
-            return fmt::format("axis {} {} -> {}", axis(), axis::name(as<axis::AxisState>(event.numbers[0])),
+            return fmt::format("axis {} {} -> {}", axis(),
+                               axis::name(as<axis::AxisState>(event.numbers[0])),
                                axis::name(as<axis::AxisState>(event.numbers[1])));
-        case EventId::AxisFailed: return fmt::format("axis {}: {}", axis(), axis::explain(errorOf(event)));
+        case EventId::AxisFailed:
+            return fmt::format("axis {}: {}", axis(), axis::explain(errorOf(event)));
         case EventId::ProgramChanged:
             return fmt::format("program '{}' {}", nameIn(names.programs, event.source),
                                name(as<ProgramPhase>(event.numbers[0]), event.numbers[1] != 0.0));
         case EventId::MachineStopped:
-            return fmt::format("machine stop by {}",
-                               describe({as<StopCause>(event.numbers[0]), event.source, event.cycle},
-                                        names.stopInputs, names.programs, names.axes));
-        case EventId::MachineStopReset: return "machine stop reset";
+            return fmt::format(
+                "machine stop by {}",
+                describe({as<StopCause>(event.numbers[0]), event.source, event.cycle},
+                         names.stopInputs, names.programs, names.axes));
+        case EventId::MachineStopReset:
+            return "machine stop reset";
         case EventId::CommandTaken:
-        case EventId::CommandRefused: return textOfCommand(event, names);
+        case EventId::CommandRefused:
+            return textOfCommand(event, names);
         case EventId::StationFailed: {
             const axis::ErrorInfo& error = axis::errorInfo(as<axis::ErrorId>(event.numbers[0]));
-            return fmt::format("axis {}: operator's command failed: {}: {}", axis(), error.name, error.text);
+            return fmt::format("axis {}: operator's command failed: {}: {}", axis(), error.name,
+                               error.text);
         }
         case EventId::OperatorLost:
             return fmt::format("axis {} stops: no sign of life from the operator", axis());

@@ -2,11 +2,10 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
-
 #include <takt/axis/axis_view.hpp>
 #include <takt/fieldbus/ethercat/network_state.hpp>
 #include <takt/record/event_log.hpp>
+#include <vector>
 
 #include "control_command.hpp"
 #include "machine_stop.hpp"
@@ -37,9 +36,11 @@ enum class EventId : std::uint16_t {
                                        const axis::ErrorRecord& error) noexcept;
 [[nodiscard]] record::Event programChanged(core::CycleNumber cycle, std::uint16_t program,
                                            ProgramPhase phase, bool held) noexcept;
-[[nodiscard]] record::Event machineStopped(core::CycleNumber cycle, const StopRecord& stop) noexcept;
+[[nodiscard]] record::Event machineStopped(core::CycleNumber cycle,
+                                           const StopRecord& stop) noexcept;
 [[nodiscard]] record::Event machineStopReset(core::CycleNumber cycle) noexcept;
-[[nodiscard]] record::Event commandTaken(core::CycleNumber cycle, const ControlCommand& command) noexcept;
+[[nodiscard]] record::Event commandTaken(core::CycleNumber cycle,
+                                         const ControlCommand& command) noexcept;
 [[nodiscard]] record::Event commandRefused(core::CycleNumber cycle, const ControlCommand& command,
                                            Refusal refusal, std::uint16_t detail) noexcept;
 [[nodiscard]] record::Event stationFailed(core::CycleNumber cycle, std::uint16_t axis,
@@ -56,8 +57,8 @@ struct ControlNames {
 
 [[nodiscard]] const char* name(ProgramPhase phase, bool held) noexcept;
 /// "axis X is held by program 'pick'; do: …"
-[[nodiscard]] std::string explain(Refusal refusal, Order order, std::uint16_t target, std::uint16_t detail,
-                                  const ControlNames& names);
+[[nodiscard]] std::string explain(Refusal refusal, Order order, std::uint16_t target,
+                                  std::uint16_t detail, const ControlNames& names);
 /// The sentence without the cycle.
 [[nodiscard]] std::string text(const record::Event& event, const ControlNames& names);
 

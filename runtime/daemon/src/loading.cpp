@@ -1,13 +1,12 @@
 #include "loading.hpp"
 
-#include <string>
-#include <utility>
-
 #include <fmt/format.h>
 
+#include <string>
 #include <takt/config/load_faults.hpp>
 #include <takt/config/load_machine.hpp>
 #include <takt/fieldbus/bus_timing.hpp>
+#include <utility>
 
 #include "command_file.hpp"
 #include "machine_control.hpp"
@@ -39,13 +38,14 @@ config::ProgramLibraries librariesOf(const RunOptions& options) noexcept {
 void checkLoad(const config::MachineConfig& machine, std::vector<std::string>& problems) {
     const fieldbus::BusTiming timing = fieldbus::computeTiming(machine.network);
     if (timing.load <= MaxLoad) return;
-    problems.push_back(fmt::format("{}: error: the bus needs {:.0f} % of the cycle of {} us; allowed: {:.0f} %; "
-                                   "do: use a longer cycle or map fewer objects",
-                                   machine.file, timing.load * 100, machine.network.cycle.count() / 1000,
-                                   MaxLoad * 100));
+    problems.push_back(fmt::format(
+        "{}: error: the bus needs {:.0f} % of the cycle of {} us; allowed: {:.0f} %; "
+        "do: use a longer cycle or map fewer objects",
+        machine.file, timing.load * 100, machine.network.cycle.count() / 1000, MaxLoad * 100));
 }
 
-/// Faults belong to the simulated machine, so they go to its twin. \return false when they are refused
+/// Faults belong to the simulated machine, so they go to its twin. \return false when they are
+/// refused
 bool readFaults(const RunOptions& options, config::LoadResult& result, Console& console) {
     config::Diagnostics diagnostics;
     const auto faults = config::loadFaults(options.faults, diagnostics);
@@ -58,9 +58,10 @@ bool readFaults(const RunOptions& options, config::LoadResult& result, Console& 
 
 }  // namespace
 
-std::optional<LoadedMachine> loadMachine(const RunOptions& options, std::vector<LinkedProgram> linked,
-                                         Console& console) {
-    config::LoadResult result = config::loadMachine(options.machine, options.searchDirs, librariesOf(options));
+std::optional<LoadedMachine> loadMachine(const RunOptions& options,
+                                         std::vector<LinkedProgram> linked, Console& console) {
+    config::LoadResult result =
+        config::loadMachine(options.machine, options.searchDirs, librariesOf(options));
     for (const config::Diagnostic& diagnostic : result.diagnostics.items()) {
         console.error(config::format(diagnostic));
     }
@@ -81,9 +82,10 @@ std::optional<LoadedMachine> loadMachine(const RunOptions& options, std::vector<
         }
     }
     if (problems.empty() && machine.programs.empty() && !options.manual) {
-        problems.push_back(fmt::format("{}: error: no program; do: name one with <Program> or --program, or "
-                                       "run with --manual",
-                                       machine.config.file));
+        problems.push_back(
+            fmt::format("{}: error: no program; do: name one with <Program> or --program, or "
+                        "run with --manual",
+                        machine.config.file));
     }
     if (!options.commands.empty()) {
         const ControlNames names = controlNames(machine.config, machine.programs);

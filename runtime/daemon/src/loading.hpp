@@ -1,10 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <vector>
-
 #include <takt/config/machine_config.hpp>
 #include <takt/daemon/run_options.hpp>
+#include <vector>
 
 #include "assembly.hpp"
 #include "console.hpp"
@@ -12,8 +11,8 @@
 
 namespace takt::daemon {
 
-/// A machine that may be started: its file is good, its bus fits the cycle, its programs are there and
-/// know their axes.
+/// A machine that may be started: its file is good, its bus fits the cycle, its programs are there
+/// and know their axes.
 struct LoadedMachine {
     config::MachineConfig config;
     Axes axes;
@@ -21,10 +20,10 @@ struct LoadedMachine {
     std::vector<TakenCommand> commands;  ///< to be replayed
 };
 
-/// Reads the machine file and all it names, loads the programs and lets each one start. Everything that
-/// is wrong is told at once; nothing is opened and nothing moves.
-/// \return empty when the machine is refused
-std::optional<LoadedMachine> loadMachine(const RunOptions& options, std::vector<LinkedProgram> linked,
-                                         Console& console);
+/// Reads the machine file and all it names, loads the programs and lets each one start. Everything
+/// that is wrong is told at once; nothing is opened and nothing moves. \return empty when the
+/// machine is refused
+std::optional<LoadedMachine> loadMachine(const RunOptions& options,
+                                         std::vector<LinkedProgram> linked, Console& console);
 
 }  // namespace takt::daemon

@@ -1,9 +1,8 @@
 #include "machine_control.hpp"
 
 #include <algorithm>
-#include <utility>
-
 #include <takt/fieldbus/pdo_layout.hpp>
+#include <utility>
 
 namespace takt::daemon {
 
@@ -18,8 +17,8 @@ std::vector<MachineStop::Input> bindInputs(const config::MachineConfig& machine,
                                         [&input](const auto& s) { return s.name == input.slave; });
         const core::PdoSlot slot =
             fieldbus::findEntry(*slave, fieldbus::Direction::Inputs, input.index, input.subindex);
-        inputs.push_back({master.image(static_cast<std::size_t>(slave - slaves.begin())), slot, input.bit,
-                          input.activeHigh, machine.network.lostLimit});
+        inputs.push_back({master.image(static_cast<std::size_t>(slave - slaves.begin())), slot,
+                          input.bit, input.activeHigh, machine.network.lostLimit});
     }
     return inputs;
 }
@@ -28,17 +27,24 @@ std::vector<MachineStop::Input> bindInputs(const config::MachineConfig& machine,
 
 const char* name(RunPhase phase) noexcept {
     switch (phase) {
-        case RunPhase::BringUp: return "bring-up";
-        case RunPhase::GoingOp: return "going to OP";
-        case RunPhase::Operating: return "operating";
-        case RunPhase::PoweringOff: return "stopping";
-        case RunPhase::LeavingOp: return "leaving OP";
-        case RunPhase::Over: return "over";
+        case RunPhase::BringUp:
+            return "bring-up";
+        case RunPhase::GoingOp:
+            return "going to OP";
+        case RunPhase::Operating:
+            return "operating";
+        case RunPhase::PoweringOff:
+            return "stopping";
+        case RunPhase::LeavingOp:
+            return "leaving OP";
+        case RunPhase::Over:
+            return "over";
     }
     return "?";
 }
 
-ControlNames controlNames(const config::MachineConfig& machine, std::span<const ProgramHost> programs) {
+ControlNames controlNames(const config::MachineConfig& machine,
+                          std::span<const ProgramHost> programs) {
     ControlNames names;
     for (const axis::AxisParams& axis : machine.axes) {
         names.axes.push_back(axis.name);
@@ -53,8 +59,12 @@ MachineControl::MachineControl(const Parts& parts, std::vector<TakenCommand> rep
     : parts_{parts},
       names_{controlNames(parts.machine, parts.programs)},
       board_{parts.axes.size(), parts.programs.size()},
-      stop_{parts.machine.machineStop, parts.machine.network.cycle, bindInputs(parts.machine, parts.master)},
-      desk_{{parts.axes, parts.programs, stop_, rings_}, parts.machine.network.cycle, std::move(replay), record} {
+      stop_{parts.machine.machineStop, parts.machine.network.cycle,
+            bindInputs(parts.machine, parts.master)},
+      desk_{{parts.axes, parts.programs, stop_, rings_},
+            parts.machine.network.cycle,
+            std::move(replay),
+            record} {
     seen_.axes.resize(parts.axes.size());
     seen_.programs.resize(parts.programs.size());
 }
@@ -77,7 +87,8 @@ void MachineControl::afterPrograms(core::CycleNumber cycle, const CycleOrders& o
 
 void MachineControl::takeWishes(core::CycleNumber cycle) noexcept {
     for (std::size_t i = 0; i < parts_.programs.size(); ++i) {
-        // A call under way, or one given up, may be writing its wishes now: they count when it comes back.
+        // A call under way, or one given up, may be writing its wishes now: they count when it
+        // comes back.
         if (!parts_.programs[i].atRest()) continue;
         const auto wishes = parts_.programs[i].machine().takeStopWishes();
         if (wishes.reset && stop_.active()) stop_.reset(parts_.axes);
@@ -107,17 +118,20 @@ void MachineControl::publish(core::CycleNumber cycle, const CycleOrders& orders)
 }
 
 void MachineControl::publishStatus(core::CycleNumber cycle, const CycleOrders& orders) noexcept {
-    board_.run.write({cycle, orders.phase, parts_.master.state(), stop_.record(), parts_.master.counters()});
+    board_.run.write(
+        {cycle, orders.phase, parts_.master.state(), stop_.record(), parts_.master.counters()});
     for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
         const axis::Axis& axis = parts_.axes[i];
-        board_.axes[i].write({axis.status(), axis.error(), static_cast<std::uint16_t>(desk_.holderOf(i)),
+        board_.axes[i].write({axis.status(), axis.error(),
+                              static_cast<std::uint16_t>(desk_.holderOf(i)),
                               axis.view().needsEnableEdge});
     }
     for (std::size_t i = 0; i < parts_.programs.size(); ++i) {
         const ProgramHost& program = parts_.programs[i];
         ProgramEntry entry{program.phase(), program.held(), program.endCycle(), {}};
         const auto& watched = program.watched();
-        const std::size_t count = program.atRest() ? std::min(watched.size(), entry.watches.size()) : 0;
+        const std::size_t count =
+            program.atRest() ? std::min(watched.size(), entry.watches.size()) : 0;
         for (std::size_t w = 0; w < count; ++w) entry.watches[w] = watched[w].number();
         board_.programs[i].write(entry);
     }
@@ -132,20 +146,24 @@ void MachineControl::noteChanges(core::CycleNumber cycle) noexcept {
         const ProgramHost& program = parts_.programs[i];
         Seen::ProgramSeen& seen = seen_.programs[i];
         if (program.phase() != seen.phase || program.held() != seen.held) {
-            events.add(programChanged(cycle, static_cast<std::uint16_t>(i), program.phase(), program.held()));
+            events.add(programChanged(cycle, static_cast<std::uint16_t>(i), program.phase(),
+                                      program.held()));
         }
         seen = {program.phase(), program.held()};
     }
     const StopRecord& stop = stop_.record();
-    if (stop.cause != StopCause::None && stop.cycle != seen_.stop.cycle) events.add(machineStopped(cycle, stop));
-    if (stop.cause == StopCause::None && seen_.stop.cause != StopCause::None) events.add(machineStopReset(cycle));
+    if (stop.cause != StopCause::None && stop.cycle != seen_.stop.cycle)
+        events.add(machineStopped(cycle, stop));
+    if (stop.cause == StopCause::None && seen_.stop.cause != StopCause::None)
+        events.add(machineStopReset(cycle));
     seen_.stop = stop;
     for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
         const axis::Axis& axis = parts_.axes[i];
         const auto number = static_cast<std::uint16_t>(i);
         if (axis.state() == seen_.axes[i]) continue;
         events.add(axisChanged(cycle, number, seen_.axes[i], axis.state()));
-        if (axis.state() == axis::AxisState::ErrorStop) events.add(axisFailed(cycle, number, axis.error()));
+        if (axis.state() == axis::AxisState::ErrorStop)
+            events.add(axisFailed(cycle, number, axis.error()));
         seen_.axes[i] = axis.state();
     }
 }

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
-
 #include <takt/config/machine_config.hpp>
 #include <takt/fieldbus/ethercat/master.hpp>
+#include <vector>
 
 #include "axes.hpp"
 #include "command_desk.hpp"

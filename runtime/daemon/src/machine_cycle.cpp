@@ -1,7 +1,6 @@
 #include "machine_cycle.hpp"
 
 #include <algorithm>
-
 #include <takt/core/cycle_guard.hpp>
 
 namespace takt::daemon {
@@ -32,7 +31,8 @@ void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {
         parts_.grid.shift(parts_.dcLock.coast());
         return;
     }
-    // How late the frame left is known and no fault of the clocks. The difference of two phases is one.
+    // How late the frame left is known and no fault of the clocks. The difference of two phases is
+    // one.
     const core::Duration half = parts_.length / 2;
     core::Duration error = (sample.phaseError - (sample.sent - beat.planned)) % parts_.length;
     if (error > half) error -= parts_.length;

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <span>
-
 #include <takt/core/clock_source.hpp>
 #include <takt/fieldbus/ethercat/master.hpp>
 #include <takt/scheduler/dc_lock.hpp>
@@ -40,7 +39,8 @@ public:
 
 private:
     void followReferenceClock(const scheduler::Beat& beat) noexcept;
-    void keepBooks(const scheduler::Beat& beat, core::HostTime replied, core::HostTime computed) noexcept;
+    void keepBooks(const scheduler::Beat& beat, core::HostTime replied,
+                   core::HostTime computed) noexcept;
 
     Parts parts_;
     CycleStatistics statistics_;

@@ -1,6 +1,5 @@
 // The part of MachineRun that runs in the cycle's thread, after each cycle and by its rules.
 #include <algorithm>
-
 #include <takt/core/cycle_guard.hpp>
 
 #include "machine_run.hpp"
@@ -22,19 +21,26 @@ void MachineRun::oneCycle() noexcept {
 
 void MachineRun::supervise() noexcept {
     switch (phase_) {
-        case Phase::BringUp: return;
-        case Phase::GoingOp: return superviseGoingOp();
-        case Phase::Operating: return superviseOperating();
-        case Phase::PoweringOff: return supervisePoweringOff();
-        case Phase::LeavingOp: return superviseLeavingOp();
-        case Phase::Over: return;
+        case Phase::BringUp:
+            return;
+        case Phase::GoingOp:
+            return superviseGoingOp();
+        case Phase::Operating:
+            return superviseOperating();
+        case Phase::PoweringOff:
+            return supervisePoweringOff();
+        case Phase::LeavingOp:
+            return superviseLeavingOp();
+        case Phase::Over:
+            return;
     }
 }
 
 void MachineRun::superviseOverruns(const scheduler::Beat& beat) noexcept {
     const scheduler::OverrunVerdict verdict = overruns_.update(beat.skipped);
     const bool tell = machine_.scheduler.overruns.policy == scheduler::OverrunPolicy::React;
-    if (tell && beat.skipped > 0 && overruns_.overruns() == 1) note(RunNotice::Kind::CycleMissed, 0, beat.skipped);
+    if (tell && beat.skipped > 0 && overruns_.overruns() == 1)
+        note(RunNotice::Kind::CycleMissed, 0, beat.skipped);
     const bool moving = phase_ == Phase::Operating || phase_ == Phase::PoweringOff;
     if (!moving || verdict == scheduler::OverrunVerdict::Fine) return;
     if (verdict == scheduler::OverrunVerdict::DriveStop && !quickStopped_) {
@@ -91,7 +97,8 @@ void MachineRun::supervisePoweringOff() noexcept {
     if (!allOff && !stopTimedOut_) {
         stopTimedOut_ = true;
         for (std::size_t i = 0; i < axes_.size(); ++i) {
-            if (!axes_[i].isDisabled()) fail(ExitCode::StopTimeout, RunNotice::Kind::AxisNotStopped, i);
+            if (!axes_[i].isDisabled())
+                fail(ExitCode::StopTimeout, RunNotice::Kind::AxisNotStopped, i);
         }
         quickStopAll();
     }
@@ -129,7 +136,8 @@ void MachineRun::fail(ExitCode code, RunNotice::Kind kind, std::size_t index) no
 }
 
 void MachineRun::note(RunNotice::Kind kind, std::size_t index, std::uint64_t number) noexcept {
-    notices_.push({.kind = kind, .index = index, .cycle = now_, .time = inPhase(), .number = number});
+    notices_.push(
+        {.kind = kind, .index = index, .cycle = now_, .time = inPhase(), .number = number});
 }
 
 void MachineRun::noteEndedPrograms() noexcept {
@@ -139,7 +147,8 @@ void MachineRun::noteEndedPrograms() noexcept {
         noted_[i] = true;
         note(RunNotice::Kind::ProgramEnded, i);
         if (phase == ProgramPhase::Finished || code_ != ExitCode::Good) continue;
-        code_ = phase == ProgramPhase::Abandoned ? ExitCode::ProgramAbandoned : ExitCode::MachineFault;
+        code_ =
+            phase == ProgramPhase::Abandoned ? ExitCode::ProgramAbandoned : ExitCode::MachineFault;
     }
 }
 
@@ -147,7 +156,8 @@ void MachineRun::noteMachineStop() noexcept {
     const MachineStop& stop = control_.machineStop();
     if (stop.active() == stopNoted_) return;
     stopNoted_ = stop.active();
-    const auto kind = stopNoted_ ? RunNotice::Kind::MachineStopped : RunNotice::Kind::MachineStopReset;
+    const auto kind =
+        stopNoted_ ? RunNotice::Kind::MachineStopped : RunNotice::Kind::MachineStopReset;
     notices_.push({.kind = kind, .cycle = now_, .stop = stop.record()});
 }
 

@@ -1,12 +1,12 @@
 #include "machine_run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "run_limits.hpp"
 
@@ -19,14 +19,18 @@ using namespace std::chrono_literals;
 constexpr std::size_t NoticeRoom = 256;
 constexpr auto HouseInterval = 20ms;
 
-double seconds(core::Duration duration) { return std::chrono::duration<double>{duration}.count(); }
-
-std::unique_ptr<BusEnd> endFor(const RunOptions& options, const config::MachineConfig& machine) {
-    return options.interface.empty() ? simulatedEnd(machine) : interfaceEnd(machine, options.interface);
+double seconds(core::Duration duration) {
+    return std::chrono::duration<double>{duration}.count();
 }
 
-/// A real computer sends a little later or earlier each time; a lock that waits for the precision of a
-/// simulated one would never be found. SYNC0 comes a quarter of the cycle after the frame, at least.
+std::unique_ptr<BusEnd> endFor(const RunOptions& options, const config::MachineConfig& machine) {
+    return options.interface.empty() ? simulatedEnd(machine)
+                                     : interfaceEnd(machine, options.interface);
+}
+
+/// A real computer sends a little later or earlier each time; a lock that waits for the precision
+/// of a simulated one would never be found. SYNC0 comes a quarter of the cycle after the frame, at
+/// least.
 scheduler::DcLockParams lockFor(const RunOptions& options, const config::MachineConfig& machine) {
     scheduler::DcLockParams params = machine.scheduler.dcLock;
     if (options.interface.empty()) return params;
@@ -38,7 +42,8 @@ scheduler::DcLockParams lockFor(const RunOptions& options, const config::Machine
     return params;
 }
 
-/// The share of the cycle that each program gets: half of it for all together, unless one was given more.
+/// The share of the cycle that each program gets: half of it for all together, unless one was given
+/// more.
 double budgetScale(const std::vector<ProgramHost>& programs) {
     constexpr double half = 0.5;
     double sum = 0;
@@ -65,7 +70,9 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       dcLock_{lockFor(options, machine_), machine_.network.cycle},
       grid_{core::HostTime{}, machine_.network.cycle},
       overruns_{machine_.scheduler.overruns},
-      control_{{machine_, bus_.master(), axes_, programs_}, machine.commands, !options.recordCommands.empty()},
+      control_{{machine_, bus_.master(), axes_, programs_},
+               machine.commands,
+               !options.recordCommands.empty()},
       server_{{machine_, programs_, control_}, options.socket, options.recordCommands},
       cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, control_, bus_.clock(),
               machine_.network.cycle}},
@@ -90,11 +97,12 @@ int MachineRun::execute() {
 bool MachineRun::bringUp() {
     console_.line(fmt::format("{}: {} devices, {} axes, cycle {} us{}{}", machine_.name,
                               machine_.network.slaves.size(), axes_.size(),
-                              machine_.network.cycle.count() / 1000, onMachine() ? ", interface " : "",
-                              options_.interface));
+                              machine_.network.cycle.count() / 1000,
+                              onMachine() ? ", interface " : "", options_.interface));
     if (options_.socket.empty() && server_.path().filename() != machine_.name + ".sock") {
-        console_.line(fmt::format("control socket {}, since another takt runs a machine of this name",
-                                  server_.path().string()));
+        console_.line(
+            fmt::format("control socket {}, since another takt runs a machine of this name",
+                        server_.path().string()));
     }
     const auto problems = bus_.master().bringUp([this](std::string_view text) {
         recorders_.drain();
@@ -102,7 +110,8 @@ bool MachineRun::bringUp() {
     });
     recorders_.drain();
     for (const auto& problem : problems) {
-        console_.error(fmt::format("{}: {}", problem.origin.empty() ? machine_.file : problem.origin, problem.text));
+        console_.error(fmt::format(
+            "{}: {}", problem.origin.empty() ? machine_.file : problem.origin, problem.text));
     }
     if (!problems.empty()) code_ = ExitCode::CouldNotRun;
     return problems.empty();
@@ -118,7 +127,8 @@ void MachineRun::begin() {
 }
 
 void MachineRun::runInline() {
-    ProgramWatchdog watchdog{options_.programWatchdog, [this](std::size_t program, core::CycleNumber cycle) {
+    ProgramWatchdog watchdog{options_.programWatchdog,
+                             [this](std::size_t program, core::CycleNumber cycle) {
                                  leaveHangingProgram(program, cycle);
                              }};
     for (std::size_t i = 0; i < programs_.size(); ++i) {
@@ -134,10 +144,12 @@ void MachineRun::runInline() {
 }
 
 void MachineRun::leaveHangingProgram(std::size_t program, core::CycleNumber cycle) {
-    console_.error(fmt::format("program '{}' did not come back from its call in cycle {} within {:g} s and was abandoned",
-                               programs_[program].name(), cycle, seconds(options_.programWatchdog)));
+    console_.error(fmt::format(
+        "program '{}' did not come back from its call in cycle {} within {:g} s and was abandoned",
+        programs_[program].name(), cycle, seconds(options_.programWatchdog)));
     // The cycle's thread is inside the program: the records are nobody else's now.
-    for (const std::string& problem : recorders_.finish(machine_.name, summary())) console_.error(problem);
+    for (const std::string& problem : recorders_.finish(machine_.name, summary()))
+        console_.error(problem);
     std::fflush(nullptr);
     std::_Exit(static_cast<int>(ExitCode::ProgramAbandoned));
 }
@@ -149,7 +161,8 @@ void MachineRun::runOnThreads() {
     Notes notes;
     for (ProgramHost& program : programs_) {
         const double share = program.params().budgetShare * scale;
-        const auto budget = static_cast<std::int64_t>(share * static_cast<double>(machine_.network.cycle.count()));
+        const auto budget =
+            static_cast<std::int64_t>(share * static_cast<double>(machine_.network.cycle.count()));
         program.useCaller(std::make_unique<ThreadCaller>(
             ThreadPlace{"takt-" + program.name(), std::max(params.priority - 1, 0), params.cpu},
             CallBudget{core::Duration{budget}, lenient}, bus_.clock(), notes));
@@ -176,12 +189,14 @@ void MachineRun::runOnThreads() {
     keepHouse(true);
 }
 
-/// Files, messages, progress. The words for the state of the network are found when no cycle changes it.
+/// Files, messages, progress. The words for the state of the network are found when no cycle
+/// changes it.
 void MachineRun::keepHouse(bool cycleRests) {
     RunNotice notice;
     while (notices_.pop(notice)) heldBack_.push_back(notice);
     std::erase_if(heldBack_, [this, cycleRests](const RunNotice& held) {
-        const bool ofNetwork = held.kind == RunNotice::Kind::NetworkFailed || held.kind == RunNotice::Kind::OpTimedOut;
+        const bool ofNetwork =
+            held.kind == RunNotice::Kind::NetworkFailed || held.kind == RunNotice::Kind::OpTimedOut;
         if (ofNetwork && !cycleRests) return false;
         reporter_.tell(held);
         return true;
@@ -192,33 +207,38 @@ void MachineRun::keepHouse(bool cycleRests) {
 
 void MachineRun::conclude() {
     if (!server_.finish()) {
-        console_.error(fmt::format("{}: not complete; is the disk full?", options_.recordCommands.string()));
+        console_.error(
+            fmt::format("{}: not complete; is the disk full?", options_.recordCommands.string()));
         if (code_ == ExitCode::Good) code_ = ExitCode::CouldNotRun;
     }
     if (reporter_.tellAxisErrors(axes_) && code_ == ExitCode::Good) code_ = ExitCode::MachineFault;
     const double simulated = static_cast<double>(now_) * seconds(machine_.network.cycle);
     const double wall = seconds(pace_.elapsed());
     const auto counters = bus_.master().counters();
-    console_.line(fmt::format("{:.3f} s in {} cycles, {:.1f} times real time; frames {} sent, {} lost, {} late; "
-                              "working counter errors {}; largest DC phase error {} ns, controller's clock {:+.1f} ppm "
-                              "against the reference",
-                              simulated, now_, wall > 0 ? simulated / wall : 0.0, counters.framesSent, counters.framesLost,
-                              counters.framesLate, counters.workingCounterErrors, cycle_.worstPhaseError().count(),
-                              dcLock_.driftPpm()));
+    console_.line(fmt::format(
+        "{:.3f} s in {} cycles, {:.1f} times real time; frames {} sent, {} lost, {} late; "
+        "working counter errors {}; largest DC phase error {} ns, controller's clock {:+.1f} ppm "
+        "against the reference",
+        simulated, now_, wall > 0 ? simulated / wall : 0.0, counters.framesSent,
+        counters.framesLost, counters.framesLate, counters.workingCounterErrors,
+        cycle_.worstPhaseError().count(), dcLock_.driftPpm()));
     if (onMachine()) tellStatistics();
 }
 
 void MachineRun::tellStatistics() {
     const CycleStatistics& statistics = cycle_.statistics();
-    console_.line(fmt::format("missed cycles {}, in {} late wake-ups: {} by the host, {} by the bus, {} by programs, {} by "
-                              "axes; DC lock lost {} times",
-                              overruns_.skipped(), overruns_.overruns(), statistics.missedBy[0],
-                              statistics.missedBy[1], statistics.missedBy[2], statistics.missedBy[3], dcLock_.relocks()));
+    console_.line(fmt::format(
+        "missed cycles {}, in {} late wake-ups: {} by the host, {} by the bus, {} by programs, {} "
+        "by "
+        "axes; DC lock lost {} times",
+        overruns_.skipped(), overruns_.overruns(), statistics.missedBy[0], statistics.missedBy[1],
+        statistics.missedBy[2], statistics.missedBy[3], dcLock_.relocks()));
     for (const std::string& line : describe(statistics)) console_.line(line);
 }
 
 std::string MachineRun::summary() const {
-    return fmt::format("{} cycles of {} us on {}", control_.board().run.read().cycle + 1, machine_.network.cycle.count() / 1000,
+    return fmt::format("{} cycles of {} us on {}", control_.board().run.read().cycle + 1,
+                       machine_.network.cycle.count() / 1000,
                        onMachine() ? options_.interface : "the simulated machine");
 }
 

@@ -3,10 +3,9 @@
 #include <atomic>
 #include <memory>
 #include <string>
-#include <vector>
-
 #include <takt/daemon/run_options.hpp>
 #include <takt/scheduler/overrun_guard.hpp>
+#include <vector>
 
 #include "assembly.hpp"
 #include "bus.hpp"
@@ -28,10 +27,10 @@ namespace takt::daemon {
 ///
 ///     BringUp → GoingOp → Operating → PoweringOff → LeavingOp → Over
 ///
-/// The cycle itself is in MachineCycle; after each cycle this class looks at what has become of it and
-/// gives the next orders, still in the cycle's thread and by its rules. What people should know leaves as
-/// notices. In virtual time all of it happens in the calling thread; on a real network the cycle has a
-/// thread of its own and the calling one keeps house: prints, writes files.
+/// The cycle itself is in MachineCycle; after each cycle this class looks at what has become of it
+/// and gives the next orders, still in the cycle's thread and by its rules. What people should know
+/// leaves as notices. In virtual time all of it happens in the calling thread; on a real network
+/// the cycle has a thread of its own and the calling one keeps house: prints, writes files.
 class MachineRun {
 public:
     /// All must outlive the object. \throw std::runtime_error when the network, the control socket

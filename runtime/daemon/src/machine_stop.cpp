@@ -1,9 +1,9 @@
 #include "machine_stop.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace takt::daemon {
 
@@ -59,12 +59,18 @@ std::string describe(const StopRecord& record, std::span<const std::string> inpu
         return record.source < names.size() ? names[record.source] : std::to_string(record.source);
     };
     switch (record.cause) {
-        case StopCause::None: return "none";
-        case StopCause::Input: return fmt::format("input '{}'", named(inputs));
-        case StopCause::Command: return "operator";
-        case StopCause::Program: return fmt::format("program '{}'", named(programs));
-        case StopCause::AxisFault: return fmt::format("fault of axis {}", named(axes));
-        case StopCause::ProgramFault: return fmt::format("failure of program '{}'", named(programs));
+        case StopCause::None:
+            return "none";
+        case StopCause::Input:
+            return fmt::format("input '{}'", named(inputs));
+        case StopCause::Command:
+            return "operator";
+        case StopCause::Program:
+            return fmt::format("program '{}'", named(programs));
+        case StopCause::AxisFault:
+            return fmt::format("fault of axis {}", named(axes));
+        case StopCause::ProgramFault:
+            return fmt::format("failure of program '{}'", named(programs));
     }
     return "?";
 }

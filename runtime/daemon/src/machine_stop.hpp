@@ -4,11 +4,10 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
-
 #include <takt/axis/machine_stop_params.hpp>
 #include <takt/core/process_image.hpp>
 #include <takt/core/time.hpp>
+#include <vector>
 
 #include "axes.hpp"
 
@@ -16,9 +15,9 @@ namespace takt::daemon {
 
 enum class StopCause : std::uint8_t {
     None,
-    Input,    ///< `source`: which of the configured inputs
-    Command,  ///< an operator
-    Program,  ///< `source`: which program asked for it
+    Input,         ///< `source`: which of the configured inputs
+    Command,       ///< an operator
+    Program,       ///< `source`: which program asked for it
     AxisFault,     ///< `source`: the axis in ErrorStop
     ProgramFault,  ///< `source`: the program that failed
 };
@@ -30,9 +29,10 @@ struct StopRecord {
     core::CycleNumber cycle{0};
 };
 
-/// One latched request that stops the whole machine: every axis ramps down and is switched off; what is
-/// still on after the configured time is stopped by its drive. It stays until it is reset, and an axis
-/// comes back only with a new edge of Enable. Not a safety function: emergency stop and STO are wired.
+/// One latched request that stops the whole machine: every axis ramps down and is switched off;
+/// what is still on after the configured time is stopped by its drive. It stays until it is reset,
+/// and an axis comes back only with a new edge of Enable. Not a safety function: emergency stop and
+/// STO are wired.
 class MachineStop {
 public:
     struct Input {
@@ -46,7 +46,8 @@ public:
     MachineStop(const axis::MachineStopParams& params, core::Duration cycle,
                 std::vector<Input> inputs);
 
-    /// rt. Latches; a second request changes nothing. \return true when the machine was not stopped yet
+    /// rt. Latches; a second request changes nothing. \return true when the machine was not stopped
+    /// yet
     bool request(StopCause cause, std::uint16_t source, core::CycleNumber cycle) noexcept;
     /// rt. Looks at the inputs; active ones latch.
     void watchInputs(core::CycleNumber cycle) noexcept;

@@ -27,7 +27,8 @@ void wake(std::atomic<std::uint32_t>& word) noexcept {
 
 /// \param deadline null: none. \return false at the deadline
 bool wait(std::atomic<std::uint32_t>& word, std::uint32_t seen, const timespec* deadline) noexcept {
-    return syscall(SYS_futex, &word, FUTEX_WAIT_BITSET_PRIVATE, seen, deadline, nullptr, FUTEX_BITSET_MATCH_ANY) == 0 ||
+    return syscall(SYS_futex, &word, FUTEX_WAIT_BITSET_PRIVATE, seen, deadline, nullptr,
+                   FUTEX_BITSET_MATCH_ANY) == 0 ||
            errno != ETIMEDOUT;
 }
 
@@ -55,7 +56,8 @@ struct ThreadCaller::Gate {
         const std::int64_t ns = deadline.time_since_epoch().count();
         const timespec until{ns / NanosPerSecond, ns % NanosPerSecond};
         while (turn.load(std::memory_order_acquire) == OfProgram) {
-            if (!wait(turn, OfProgram, &until)) return turn.load(std::memory_order_acquire) == OfCycle;
+            if (!wait(turn, OfProgram, &until))
+                return turn.load(std::memory_order_acquire) == OfCycle;
         }
         return true;
     }
@@ -82,12 +84,13 @@ struct ThreadCaller::Gate {
     }
 };
 
-ThreadCaller::ThreadCaller(const ThreadPlace& place, const CallBudget& budget, core::ClockSource& clock,
-                           Notes& notes)
+ThreadCaller::ThreadCaller(const ThreadPlace& place, const CallBudget& budget,
+                           core::ClockSource& clock, Notes& notes)
     : budget_{budget},
       clock_{clock},
       gate_{std::make_shared<Gate>()},
-      thread_{std::make_unique<RealtimeThread>(place, [gate = gate_] { gate->serve(); }, notes)} {
+      thread_{std::make_unique<RealtimeThread>(
+          place, [gate = gate_] { gate->serve(); }, notes)} {
     while (gate_->thread.load(std::memory_order_acquire) == 0) sched_yield();
 }
 

@@ -1,9 +1,9 @@
 #include "program_host.hpp"
 
+#include <fmt/format.h>
+
 #include <exception>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace takt::daemon {
 
@@ -11,10 +11,14 @@ namespace {
 
 ProgramPhase phaseAfter(CallAnswer answer) noexcept {
     switch (answer) {
-        case CallAnswer::Running: return ProgramPhase::Running;
-        case CallAnswer::Finished: return ProgramPhase::Finished;
-        case CallAnswer::Failed: return ProgramPhase::Failed;
-        case CallAnswer::Threw: return ProgramPhase::Threw;
+        case CallAnswer::Running:
+            return ProgramPhase::Running;
+        case CallAnswer::Finished:
+            return ProgramPhase::Finished;
+        case CallAnswer::Failed:
+            return ProgramPhase::Failed;
+        case CallAnswer::Threw:
+            return ProgramPhase::Threw;
     }
     return ProgramPhase::Failed;
 }
@@ -39,7 +43,8 @@ std::vector<std::string> ProgramHost::start(const Axes& axes, core::Duration cyc
         named.push_back({axes[i].name(), axis::AxisRef{work_->area(i)}});
         known += (i == 0 ? "" : ", ") + axes[i].name();
     }
-    work_->setMachine(std::make_unique<program::Machine>(std::move(named), cycle * params_.everyCycles));
+    work_->setMachine(
+        std::make_unique<program::Machine>(std::move(named), cycle * params_.everyCycles));
     std::vector<std::string> problems;
     try {
         work_->program().start(work_->machine());
@@ -50,8 +55,9 @@ std::vector<std::string> ProgramHost::start(const Axes& axes, core::Duration cyc
         problems.push_back(fmt::format("program '{}' threw in start", name()));
     }
     for (const std::string& axis : work_->machine().unknownAxes()) {
-        problems.push_back(fmt::format("program '{}' asks for axis '{}', which does not exist; allowed: {}",
-                                       name(), axis, known));
+        problems.push_back(
+            fmt::format("program '{}' asks for axis '{}', which does not exist; allowed: {}",
+                        name(), axis, known));
     }
     return problems;
 }
@@ -64,11 +70,13 @@ void ProgramHost::cycle(core::CycleNumber cycle, Axes& axes) noexcept {
         phase_ = ProgramPhase::Running;
     }
     switch (caller_->call(*work_, cycle)) {
-        case CallOutcome::Late: return;
+        case CallOutcome::Late:
+            return;
         case CallOutcome::Abandoned:
             end(ProgramPhase::Abandoned, cycle);
             return stopAxes(axes);
-        case CallOutcome::CameBack: break;
+        case CallOutcome::CameBack:
+            break;
     }
     const ProgramPhase phase = phaseAfter(work_->answer());
     if (phase != ProgramPhase::Running) end(phase, cycle);

@@ -3,12 +3,11 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
-
 #include <takt/program/machine.hpp>
 #include <takt/program/program.hpp>
 #include <takt/program/program_library.hpp>
 #include <takt/program/program_params.hpp>
+#include <vector>
 
 #include "axes.hpp"
 #include "program_caller.hpp"
@@ -17,7 +16,7 @@
 namespace takt::daemon {
 
 enum class ProgramPhase : std::uint8_t {
-    Waiting,    ///< not called yet
+    Waiting,  ///< not called yet
     Running,
     Finished,
     Failed,     ///< said so itself
@@ -40,7 +39,8 @@ public:
     void useCaller(std::unique_ptr<ProgramCaller> caller) { caller_ = std::move(caller); }
     /// rt. One call of the program; its commands reach the axes when it came back. \pre useCaller()
     void cycle(core::CycleNumber cycle, Axes& axes) noexcept;
-    /// rt. The operator stops the program: it is not called any more and its axes stop on their ramp.
+    /// rt. The operator stops the program: it is not called any more and its axes stop on their
+    /// ramp.
     void hold(Axes& axes) noexcept;
     /// rt. It is called again from where it was stopped; its blocks show CommandAborted.
     void goOn() noexcept { held_ = false; }
@@ -50,12 +50,16 @@ public:
         return phase_ != ProgramPhase::Abandoned && !(caller_ && caller_->underWay());
     }
     /// rt. The program has asked for this axis; while it runs nobody else moves it.
-    [[nodiscard]] bool uses(std::size_t axis) const noexcept { return work_->machine().axes()[axis].asked; }
-    /// rt. The machine as the program sees it: to tell it of a machine stop and to hear it ask for one.
-    /// \pre atRest()
+    [[nodiscard]] bool uses(std::size_t axis) const noexcept {
+        return work_->machine().axes()[axis].asked;
+    }
+    /// rt. The machine as the program sees it: to tell it of a machine stop and to hear it ask for
+    /// one. \pre atRest()
     [[nodiscard]] program::Machine& machine() noexcept { return work_->machine(); }
     [[nodiscard]] const program::Machine& machine() const noexcept { return work_->machine(); }
-    [[nodiscard]] const std::vector<program::Watch>& watched() const noexcept { return inspector_.watches(); }
+    [[nodiscard]] const std::vector<program::Watch>& watched() const noexcept {
+        return inspector_.watches();
+    }
 
     /// After the last cycle. Calls the program's `stop` once, unless a call never came back.
     void stop();
@@ -68,7 +72,8 @@ public:
     /// Why it failed or what it threw; empty otherwise.
     [[nodiscard]] std::string_view failure() const noexcept;
     [[nodiscard]] core::CycleNumber endCycle() const noexcept { return endCycle_; }
-    /// The values the program wants seen, "step = 3, parts = 1". Not while it runs on another thread.
+    /// The values the program wants seen, "step = 3, parts = 1". Not while it runs on another
+    /// thread.
     [[nodiscard]] std::string watches() const;
 
 private:

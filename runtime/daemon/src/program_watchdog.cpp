@@ -5,7 +5,8 @@
 namespace takt::daemon {
 
 namespace {
-/// The limit is looked at in so many parts: time in which the whole computer stood still counts once.
+/// The limit is looked at in so many parts: time in which the whole computer stood still counts
+/// once.
 constexpr int Looks = 10;
 }  // namespace
 

@@ -10,8 +10,8 @@
 
 namespace takt::daemon {
 
-/// Watches calls of programs that are made inline, by the wall clock and from a thread of its own. It
-/// reads no clock inside the cycle, so that a run in virtual time does not depend on it.
+/// Watches calls of programs that are made inline, by the wall clock and from a thread of its own.
+/// It reads no clock inside the cycle, so that a run in virtual time does not depend on it.
 class ProgramWatchdog {
 public:
     /// Called once, on the watchdog's thread, while the program still has the cycle's thread.

@@ -19,9 +19,12 @@ void ProgramWork::call() noexcept {
     const core::ProgramCallGuard section;
     try {
         switch (program_->cycle(*machine_)) {
-            case program::ProgramState::Running: return answer(CallAnswer::Running, {});
-            case program::ProgramState::Finished: return answer(CallAnswer::Finished, {});
-            case program::ProgramState::Failed: return answer(CallAnswer::Failed, machine_->failure());
+            case program::ProgramState::Running:
+                return answer(CallAnswer::Running, {});
+            case program::ProgramState::Finished:
+                return answer(CallAnswer::Finished, {});
+            case program::ProgramState::Failed:
+                return answer(CallAnswer::Failed, machine_->failure());
         }
     } catch (const std::exception& error) {
         answer(CallAnswer::Threw, error.what());

@@ -13,8 +13,8 @@ namespace takt::daemon {
 /// What became of one call of a program.
 enum class CallAnswer : std::uint8_t { Running, Finished, Failed, Threw };
 
-/// All that a program touches while it is called: nobody else may until the call has come back. Of a
-/// program that never comes back it is given up as a whole.
+/// All that a program touches while it is called: nobody else may until the call has come back. Of
+/// a program that never comes back it is given up as a whole.
 class ProgramWork {
 public:
     ProgramWork(program::ProgramPtr program, std::size_t axisCount, std::uint16_t number);
@@ -29,7 +29,9 @@ public:
     void call() noexcept;
     [[nodiscard]] CallAnswer answer() const noexcept { return answer_; }
     /// Why it failed or what it threw; empty otherwise.
-    [[nodiscard]] std::string_view failure() const noexcept { return {failure_.data(), failureSize_}; }
+    [[nodiscard]] std::string_view failure() const noexcept {
+        return {failure_.data(), failureSize_};
+    }
 
 private:
     void answer(CallAnswer answer, std::string_view why) noexcept;

@@ -91,14 +91,19 @@ void Notes::add(const std::string& text) {
 
 RealtimeThread::RealtimeThread(const ThreadPlace& place, std::function<void()> body, Notes& notes) {
     auto start = std::make_unique<Start>(Start{place.name, std::move(body)});
-    int error = pthread_create(&thread_, Attributes{place.priority, place.cpu}.get(), &runThread, start.get());
+    int error = pthread_create(&thread_, Attributes{place.priority, place.cpu}.get(), &runThread,
+                               start.get());
     if (error == EINVAL && place.cpu >= 0) {
-        notes.add(fmt::format("note: there is no processor {} for the cycle; it runs on any", place.cpu));
-        error = pthread_create(&thread_, Attributes{place.priority, -1}.get(), &runThread, start.get());
+        notes.add(
+            fmt::format("note: there is no processor {} for the cycle; it runs on any", place.cpu));
+        error =
+            pthread_create(&thread_, Attributes{place.priority, -1}.get(), &runThread, start.get());
     }
     if (error == EPERM && place.priority > 0) {
-        notes.add("note: no real-time priority (SCHED_FIFO is refused), cycles may come late; do: give takt "
-                  "CAP_SYS_NICE or an RLIMIT_RTPRIO");
+        notes.add(
+            "note: no real-time priority (SCHED_FIFO is refused), cycles may come late; do: give "
+            "takt "
+            "CAP_SYS_NICE or an RLIMIT_RTPRIO");
         error = pthread_create(&thread_, Attributes{0, -1}.get(), &runThread, start.get());
     }
     if (error != 0) {
@@ -108,7 +113,9 @@ RealtimeThread::RealtimeThread(const ThreadPlace& place, std::function<void()> b
     static_cast<void>(start.release());  // now the thread's own
 }
 
-RealtimeThread::~RealtimeThread() { join(); }
+RealtimeThread::~RealtimeThread() {
+    join();
+}
 
 void RealtimeThread::join() {
     if (running_) pthread_join(thread_, nullptr);
@@ -121,15 +128,16 @@ void RealtimeThread::letGo() noexcept {
 }
 
 void lockMemory(Notes& notes) {
-    // Memory that comes later is locked too only where that can never make an allocation fail: the right to
-    // lock is given up, so a limit would then count.
+    // Memory that comes later is locked too only where that can never make an allocation fail: the
+    // right to lock is given up, so a limit would then count.
     rlimit limit{};
     getrlimit(RLIMIT_MEMLOCK, &limit);
     const int future = limit.rlim_cur == RLIM_INFINITY ? MCL_FUTURE : 0;
     if (mlockall(MCL_CURRENT | future) == 0) return;
-    notes.add(fmt::format("note: memory is not locked ({}), a page that is swapped out makes a cycle late; do: give "
-                          "takt CAP_IPC_LOCK or an unlimited RLIMIT_MEMLOCK",
-                          std::strerror(errno)));
+    notes.add(fmt::format(
+        "note: memory is not locked ({}), a page that is swapped out makes a cycle late; do: give "
+        "takt CAP_IPC_LOCK or an unlimited RLIMIT_MEMLOCK",
+        std::strerror(errno)));
 }
 
 void dropCapabilities() noexcept {

@@ -25,8 +25,8 @@ struct ThreadPlace {
     int cpu{-1};       ///< -1 = any
 };
 
-/// A thread with a real-time priority, a fixed stack and denormal numbers flushed to zero. It gives up the
-/// capabilities it has inherited before it does anything else.
+/// A thread with a real-time priority, a fixed stack and denormal numbers flushed to zero. It gives
+/// up the capabilities it has inherited before it does anything else.
 class RealtimeThread {
 public:
     /// Where priority or processor are refused the thread runs without and a note says so.

@@ -48,7 +48,8 @@ Recorders::Recorders(const RunOptions& options, const config::MachineConfig& mac
         sinks_.push_back(csv_.get());
     }
     if (!plotPath_.empty()) {
-        // Opened once at the start, so that a place that cannot be written is told before anything moves.
+        // Opened once at the start, so that a place that cannot be written is told before anything
+        // moves.
         record::OutputFile{plotPath_}.flush();
         const auto spec = record::motionPlot({}, {}, motionAxes_);
         plot_ = std::make_unique<record::PlotData>(columns, "t_ns", record::columnsOf(spec));
@@ -81,7 +82,8 @@ std::vector<std::string> Recorders::finish(const std::string& title, const std::
         problems.push_back(fmt::format("{}: not complete; is the disk full?", path.string()));
     };
     if (csv_ && (!csv_->finish() || trace_->dropped() > 0)) incomplete(csvFile_->path());
-    if (capture_ && (!capture_->finish() || capture_->dropped() > 0)) incomplete(captureFile_->path());
+    if (capture_ && (!capture_->finish() || capture_->dropped() > 0))
+        incomplete(captureFile_->path());
     if (plot_) {
         record::OutputFile file{plotPath_};
         file.write(record::drawSvg(record::motionPlot(title, subtitle, motionAxes_), *plot_));

@@ -3,8 +3,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
-
 #include <takt/config/machine_config.hpp>
 #include <takt/core/time.hpp>
 #include <takt/daemon/run_options.hpp>
@@ -14,6 +12,7 @@
 #include <takt/record/pcapng_writer.hpp>
 #include <takt/record/plot_data.hpp>
 #include <takt/record/trace.hpp>
+#include <vector>
 
 #include "axes.hpp"
 

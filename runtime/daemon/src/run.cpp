@@ -1,9 +1,8 @@
-#include <takt/daemon/run.hpp>
+#include <fmt/format.h>
 
 #include <stdexcept>
+#include <takt/daemon/run.hpp>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "loading.hpp"
 #include "machine_run.hpp"
@@ -21,7 +20,8 @@ int run(const RunOptions& options, std::vector<LinkedProgram> linked) {
         const auto problems = recorders.finish(machine->config.name, machineRun.summary());
         for (const std::string& problem : problems) console.error(problem);
         if (const record::PcapngWriter* capture = recorders.capture()) {
-            console.line(fmt::format("capture: {} frames, each sent and returned", capture->packets()));
+            console.line(
+                fmt::format("capture: {} frames, each sent and returned", capture->packets()));
         }
         if (!options.plot.empty()) console.line(fmt::format("plot: {}", options.plot.string()));
         return code == 0 && !problems.empty() ? static_cast<int>(ExitCode::CouldNotRun) : code;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-
 #include <takt/core/spsc_ring.hpp>
 #include <takt/core/time.hpp>
 
@@ -9,19 +8,20 @@
 
 namespace takt::daemon {
 
-/// Something a person should know, as it leaves the cycle: numbers only. RunReporter finds the words.
+/// Something a person should know, as it leaves the cycle: numbers only. RunReporter finds the
+/// words.
 struct RunNotice {
     enum class Kind : std::uint8_t {
-        ReachedOp,        ///< `time`: since the first cycle
-        NetworkFailed,    ///< while going to OP
+        ReachedOp,      ///< `time`: since the first cycle
+        NetworkFailed,  ///< while going to OP
         OpTimedOut,
-        ProgramEnded,     ///< `index`: of the program
-        AxisNotStopped,   ///< `index`: of the axis
+        ProgramEnded,    ///< `index`: of the program
+        AxisNotStopped,  ///< `index`: of the axis
         InitTimedOut,
-        CycleMissed,      ///< the first one; `number`: grid points
-        StoppedOnPath,    ///< too many missed cycles; `number`: in a row
+        CycleMissed,    ///< the first one; `number`: grid points
+        StoppedOnPath,  ///< too many missed cycles; `number`: in a row
         DrivesStopped,
-        MachineStopped,   ///< `stop`
+        MachineStopped,  ///< `stop`
         MachineStopReset,
     };
     Kind kind{Kind::ReachedOp};

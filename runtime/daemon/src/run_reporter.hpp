@@ -20,8 +20,13 @@ class RunReporter {
 public:
     /// All must outlive the object.
     RunReporter(const config::MachineConfig& machine, std::span<const ProgramHost> programs,
-                const fieldbus::ethercat::Master& master, const ControlNames& names, Console& console)
-        : machine_{machine}, programs_{programs}, master_{master}, names_{names}, console_{console} {}
+                const fieldbus::ethercat::Master& master, const ControlNames& names,
+                Console& console)
+        : machine_{machine},
+          programs_{programs},
+          master_{master},
+          names_{names},
+          console_{console} {}
 
     /// \pre what the notice is about no longer changes
     void tell(const RunNotice& notice);

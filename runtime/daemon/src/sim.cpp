@@ -1,11 +1,10 @@
-#include <takt/daemon/sim.hpp>
-
 #include <fmt/format.h>
 
 #include <chrono>
 #include <stdexcept>
 #include <takt/config/load_machine.hpp>
 #include <takt/daemon/run_options.hpp>
+#include <takt/daemon/sim.hpp>
 #include <thread>
 
 #include "console.hpp"
@@ -24,10 +23,12 @@ constexpr int ServerPriority = 70;
 constexpr auto PrintInterval = 20ms;
 
 std::string standing(const std::string& name, const twin::DeviceProbe& probe) {
-    std::string text = fmt::format("{}: {}{}, drive {}", name, wire::name(probe.alState),
-                                   probe.alError ? " with error" : "", core::cia402::name(probe.driveState));
+    std::string text =
+        fmt::format("{}: {}{}, drive {}", name, wire::name(probe.alState),
+                    probe.alError ? " with error" : "", core::cia402::name(probe.driveState));
     if (probe.alStatusCode != 0) {
-        text += fmt::format("; AL status 0x{:04X}: {}", probe.alStatusCode, wire::explainAlStatus(probe.alStatusCode));
+        text += fmt::format("; AL status 0x{:04X}: {}", probe.alStatusCode,
+                            wire::explainAlStatus(probe.alStatusCode));
     }
     return text;
 }
@@ -35,8 +36,9 @@ std::string standing(const std::string& name, const twin::DeviceProbe& probe) {
 void printEvents(SimServer& server, const config::MachineConfig& machine, Console& console) {
     SimEvent event;
     while (server.next(event)) {
-        console.line(fmt::format("{:.3f} s  {}", std::chrono::duration<double>{event.time.time_since_epoch()}.count(),
-                                 standing(machine.network.slaves[event.device].name, event.probe)));
+        console.line(fmt::format(
+            "{:.3f} s  {}", std::chrono::duration<double>{event.time.time_since_epoch()}.count(),
+            standing(machine.network.slaves[event.device].name, event.probe)));
     }
 }
 
@@ -47,8 +49,8 @@ void serve(const SimOptions& options, const config::MachineConfig& machine, Cons
     RealtimeThread thread{{"takt-sim", ServerPriority, -1}, [&server] { server.serve(); }, notes};
     dropCapabilities();
     for (const std::string& note : notes.lines()) console.line(note);
-    console.line(fmt::format("{}: {} simulated devices on {}", machine.name, machine.network.slaves.size(),
-                             options.interface));
+    console.line(fmt::format("{}: {} simulated devices on {}", machine.name,
+                             machine.network.slaves.size(), options.interface));
     while (stop.count() == 0) {
         printEvents(server, machine, console);
         std::this_thread::sleep_for(PrintInterval);
@@ -58,9 +60,10 @@ void serve(const SimOptions& options, const config::MachineConfig& machine, Cons
     printEvents(server, machine, console);
     for (std::size_t i = 0; i < machine.network.slaves.size(); ++i) {
         const twin::DeviceProbe probe = server.probe(i);
-        console.line(fmt::format("end: {}; motor at {:.6f} turns, {:.3f} turns/s; {} cycles, {} without new outputs",
-                                 standing(machine.network.slaves[i].name, probe), probe.motorTurns,
-                                 probe.motorVelocity, probe.cycles, probe.missedOutputs));
+        console.line(fmt::format(
+            "end: {}; motor at {:.6f} turns, {:.3f} turns/s; {} cycles, {} without new outputs",
+            standing(machine.network.slaves[i].name, probe), probe.motorTurns, probe.motorVelocity,
+            probe.cycles, probe.missedOutputs));
     }
     console.line(fmt::format("{} frames answered", server.frames()));
 }

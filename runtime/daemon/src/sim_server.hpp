@@ -18,9 +18,9 @@ struct SimEvent {
     twin::DeviceProbe probe;
 };
 
-/// The twin behind a network interface. True time is the monotonic clock, and a frame acts at the time at
-/// which the kernel took it in: a server that is scheduled late answers late, but nothing in the simulated
-/// world happens at another time.
+/// The twin behind a network interface. True time is the monotonic clock, and a frame acts at the
+/// time at which the kernel took it in: a server that is scheduled late answers late, but nothing
+/// in the simulated world happens at another time.
 class SimServer {
 public:
     /// \throw std::runtime_error when the interface cannot be had
@@ -31,7 +31,8 @@ public:
     /// From any thread.
     void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
 
-    /// One reader. Changes of AL state, error, or drive state since the last call. \return false: none
+    /// One reader. Changes of AL state, error, or drive state since the last call. \return false:
+    /// none
     bool next(SimEvent& event) noexcept { return events_.pop(event); }
     /// \pre serve() has returned
     [[nodiscard]] twin::DeviceProbe probe(std::size_t device) const { return twin_.probe(device); }

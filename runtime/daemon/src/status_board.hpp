@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <deque>
-
 #include <takt/axis/axis_view.hpp>
 #include <takt/core/seq_lock.hpp>
 #include <takt/fieldbus/ethercat/cycle_counters.hpp>
@@ -43,8 +42,8 @@ struct ProgramEntry {
     std::array<double, MostWatches> watches{};
 };
 
-/// The status of the machine: written by the cycle, read by anybody. Each entry is whole; two entries may
-/// be of neighbouring cycles.
+/// The status of the machine: written by the cycle, read by anybody. Each entry is whole; two
+/// entries may be of neighbouring cycles.
 struct StatusBoard {
     StatusBoard(std::size_t axisCount, std::size_t programCount)
         : axes(axisCount), programs(programCount) {}

@@ -41,7 +41,11 @@ StopRequest::~StopRequest() {
     sigaction(SIGTTOU, &oldTtou_, nullptr);
 }
 
-int StopRequest::count() const noexcept { return signalCount.load(std::memory_order_relaxed); }
-int StopRequest::signal() const noexcept { return firstSignal.load(std::memory_order_relaxed); }
+int StopRequest::count() const noexcept {
+    return signalCount.load(std::memory_order_relaxed);
+}
+int StopRequest::signal() const noexcept {
+    return firstSignal.load(std::memory_order_relaxed);
+}
 
 }  // namespace takt::daemon

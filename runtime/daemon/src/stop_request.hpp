@@ -4,9 +4,11 @@
 
 namespace takt::daemon {
 
-/// SIGINT, SIGTERM and SIGHUP as requests to stop, for the lifetime of the object. A closed terminal is
-/// such a request too: the machine stops in order, never at once. A closed pipe, a key that suspends
-/// (^Z) and a terminal that is somebody else's do nothing: output is not worth a machine that stops dead.
+/// SIGINT, SIGTERM and SIGHUP as requests to stop, for the lifetime of the object. A closed
+/// terminal is such a request too: the machine stops in order, never at once. A closed pipe, a key
+/// that suspends
+/// (^Z) and a terminal that is somebody else's do nothing: output is not worth a machine that stops
+/// dead.
 class StopRequest {
 public:
     StopRequest();

@@ -69,12 +69,14 @@ Descriptor openSocket(const std::string& interface) {
     }
     Descriptor socket{::socket(AF_PACKET, SOCK_RAW | SOCK_CLOEXEC, 0)};
     if (socket.number() < 0 && (errno == EPERM || errno == EACCES)) {
-        refuse(interface, "no permission to open a raw socket; takt needs the capability CAP_NET_RAW");
+        refuse(interface,
+               "no permission to open a raw socket; takt needs the capability CAP_NET_RAW");
     }
     if (socket.number() < 0) refuse(interface, std::strerror(errno));
     ifreq request{};
     interface.copy(request.ifr_name, IFNAMSIZ - 1);
-    if (ioctl(socket.number(), SIOCGIFFLAGS, &request) != 0) refuse(interface, std::strerror(errno));
+    if (ioctl(socket.number(), SIOCGIFFLAGS, &request) != 0)
+        refuse(interface, std::strerror(errno));
     if ((request.ifr_flags & IFF_UP) == 0) {
         refuse(interface, "is down; do: ip link set " + interface + " up");
     }
@@ -87,7 +89,8 @@ void bindSocket(int socket, const std::string& interface) {
     if (setsockopt(socket, SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof on) != 0) {
         refuse(interface, "the kernel cannot leave out outgoing copies (needs Linux 4.20)");
     }
-    // Both only make things better: stamps where a frame enters the kernel, and no queue before the card.
+    // Both only make things better: stamps where a frame enters the kernel, and no queue before the
+    // card.
     setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
     setsockopt(socket, SOL_PACKET, PACKET_QDISC_BYPASS, &on, sizeof on);
     sockaddr_ll address{};
@@ -162,8 +165,8 @@ wire::LinkStatus PacketLink::send(std::span<wire::Frame> frames) noexcept {
         frames[i].stamp = now;
         calls_->pieces[i] = {frames[i].bytes.data(), frames[i].size};
     }
-    const int sent = sendmmsg(calls_->socket.number(), calls_->messages.data(),
-                              static_cast<unsigned>(count), 0);
+    const int sent =
+        sendmmsg(calls_->socket.number(), calls_->messages.data(), static_cast<unsigned>(count), 0);
     if (sent == static_cast<int>(frames.size())) return wire::LinkStatus::Ok;
     const bool down = sent < 0 && (errno == ENETDOWN || errno == ENXIO || errno == ENODEV);
     return down ? wire::LinkStatus::Down : wire::LinkStatus::SendFailed;

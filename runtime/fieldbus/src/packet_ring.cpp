@@ -46,8 +46,8 @@ int PacketRing::open(int socket) noexcept {
     request.tp_frame_size = FrameSize;
     request.tp_frame_nr = Frames;
     if (setsockopt(socket, SOL_PACKET, PACKET_RX_RING, &request, sizeof request) != 0) return errno;
-    void* const memory =
-        mmap(nullptr, Blocks * BlockSize, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, socket, 0);
+    void* const memory = mmap(nullptr, Blocks * BlockSize, PROT_READ | PROT_WRITE,
+                              MAP_SHARED | MAP_POPULATE, socket, 0);
     if (memory == MAP_FAILED) return errno;
     memory_ = memory;
     return 0;
@@ -58,7 +58,8 @@ bool PacketRing::take(wire::Frame& to) noexcept {
     for (std::size_t tried = 0; tried < Frames; ++tried) {
         auto* const slot = static_cast<std::uint8_t*>(memory_) + next_ * FrameSize;
         auto* const header = reinterpret_cast<tpacket2_hdr*>(slot);
-        if ((__atomic_load_n(&header->tp_status, __ATOMIC_ACQUIRE) & TP_STATUS_USER) == 0) return false;
+        if ((__atomic_load_n(&header->tp_status, __ATOMIC_ACQUIRE) & TP_STATUS_USER) == 0)
+            return false;
         const std::size_t size = header->tp_len;
         const bool whole = size <= wire::MaxFrameSize && header->tp_snaplen == size;
         if (whole) {

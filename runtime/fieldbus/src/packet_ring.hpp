@@ -6,8 +6,8 @@
 
 namespace takt::fieldbus {
 
-/// The frames that the kernel has received, in memory shared with it (packet(7), TPACKET_V2): taking
-/// one costs no system call, and each carries the kernel's arrival time.
+/// The frames that the kernel has received, in memory shared with it (packet(7), TPACKET_V2):
+/// taking one costs no system call, and each carries the kernel's arrival time.
 class PacketRing {
 public:
     PacketRing() = default;
@@ -17,8 +17,8 @@ public:
 
     /// Before the socket is bound. \return 0, or the error number
     int open(int socket) noexcept;
-    /// rt. Copies the oldest frame into `to`; its stamp is wall time, in ns since 1970. Frames longer
-    /// than Ethernet allows are dropped. \return false when there is none
+    /// rt. Copies the oldest frame into `to`; its stamp is wall time, in ns since 1970. Frames
+    /// longer than Ethernet allows are dropped. \return false when there is none
     bool take(wire::Frame& to) noexcept;
 
 private:

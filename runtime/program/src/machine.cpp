@@ -1,6 +1,5 @@
-#include <takt/program/machine.hpp>
-
 #include <algorithm>
+#include <takt/program/machine.hpp>
 #include <utility>
 
 namespace takt::program {

@@ -1,7 +1,6 @@
-#include <takt/scheduler/dc_lock.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <takt/scheduler/dc_lock.hpp>
 
 namespace takt::scheduler {
 
@@ -34,7 +33,9 @@ core::Duration DcLock::coast() noexcept {
     return core::Duration{static_cast<std::int64_t>(whole)};
 }
 
-double DcLock::driftPpm() const noexcept { return integral_ / cycle_ * 1e6; }
+double DcLock::driftPpm() const noexcept {
+    return integral_ / cycle_ * 1e6;
+}
 
 void DcLock::judge(double error) noexcept {
     const double size = std::abs(error);

@@ -9,7 +9,8 @@ OverrunVerdict OverrunGuard::update(std::uint32_t skipped) noexcept {
     const bool rateExceeded = tooMany(skipped);
     if (params_.policy == OverrunPolicy::Count) return OverrunVerdict::Fine;
     if (inRow_ >= params_.driveStopAfter) return OverrunVerdict::DriveStop;
-    return inRow_ >= params_.stopAfter || rateExceeded ? OverrunVerdict::StopOnPath : OverrunVerdict::Fine;
+    return inRow_ >= params_.stopAfter || rateExceeded ? OverrunVerdict::StopOnPath
+                                                       : OverrunVerdict::Fine;
 }
 
 /// Of the stretch of cycles that is being counted; a new stretch begins every RateWindow.

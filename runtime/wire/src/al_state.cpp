@@ -1,6 +1,5 @@
-#include <takt/wire/al_state.hpp>
-
 #include <array>
+#include <takt/wire/al_state.hpp>
 
 namespace takt::wire {
 
@@ -17,7 +16,8 @@ constexpr std::array AlExplanations{
     Explanation<std::uint16_t>{0x0000, "no error"},
     Explanation<std::uint16_t>{0x0001, "unspecified error; look at the device's own display"},
     Explanation<std::uint16_t>{0x0002, "the device is out of memory"},
-    Explanation<std::uint16_t>{0x0003, "invalid device setup; modules do not fit the configuration"},
+    Explanation<std::uint16_t>{0x0003,
+                               "invalid device setup; modules do not fit the configuration"},
     Explanation<std::uint16_t>{0x0004, "invalid revision; compare ESI file and device"},
     Explanation<std::uint16_t>{0x0006, "EEPROM contents do not match the firmware"},
     Explanation<std::uint16_t>{0x0007, "firmware update failed"},
@@ -26,15 +26,20 @@ constexpr std::array AlExplanations{
     Explanation<std::uint16_t>{0x0013, "bootstrap is not supported"},
     Explanation<std::uint16_t>{0x0014, "no valid firmware"},
     Explanation<std::uint16_t>{0x0015, "invalid mailbox configuration for BOOT; check SM0 and SM1"},
-    Explanation<std::uint16_t>{0x0016, "invalid mailbox configuration for PREOP; check SM0 and SM1 against the ESI file"},
+    Explanation<std::uint16_t>{
+        0x0016, "invalid mailbox configuration for PREOP; check SM0 and SM1 against the ESI file"},
     Explanation<std::uint16_t>{0x0017, "invalid SyncManager configuration"},
     Explanation<std::uint16_t>{0x0018, "no valid inputs"},
     Explanation<std::uint16_t>{0x0019, "no valid outputs; process data must be cycling before OP"},
-    Explanation<std::uint16_t>{0x001A, "synchronization error; frames and SYNC0 come in the wrong order or jitter too much"},
+    Explanation<std::uint16_t>{
+        0x001A,
+        "synchronization error; frames and SYNC0 come in the wrong order or jitter too much"},
     Explanation<std::uint16_t>{0x001B, "SyncManager watchdog; process data stopped coming"},
     Explanation<std::uint16_t>{0x001C, "invalid SyncManager types"},
-    Explanation<std::uint16_t>{0x001D, "invalid output configuration; SM2 length differs from the mapped outputs"},
-    Explanation<std::uint16_t>{0x001E, "invalid input configuration; SM3 length differs from the mapped inputs"},
+    Explanation<std::uint16_t>{
+        0x001D, "invalid output configuration; SM2 length differs from the mapped outputs"},
+    Explanation<std::uint16_t>{
+        0x001E, "invalid input configuration; SM3 length differs from the mapped inputs"},
     Explanation<std::uint16_t>{0x001F, "invalid watchdog configuration"},
     Explanation<std::uint16_t>{0x0020, "the device needs a cold start"},
     Explanation<std::uint16_t>{0x0021, "the device needs INIT"},
@@ -51,7 +56,8 @@ constexpr std::array AlExplanations{
     Explanation<std::uint16_t>{0x002C, "fatal synchronisation error; SYNC0 is missing"},
     Explanation<std::uint16_t>{0x002D, "SYNC0 was not received in time"},
     Explanation<std::uint16_t>{0x002E, "cycle time too small"},
-    Explanation<std::uint16_t>{0x0030, "invalid DC SYNC configuration; check AssignActivate and the cycle time"},
+    Explanation<std::uint16_t>{
+        0x0030, "invalid DC SYNC configuration; check AssignActivate and the cycle time"},
     Explanation<std::uint16_t>{0x0031, "invalid DC latch configuration"},
     Explanation<std::uint16_t>{0x0032, "PLL error; the device's clock is not locked"},
     Explanation<std::uint16_t>{0x0033, "DC SYNC input/output error"},
@@ -115,12 +121,18 @@ const char* find(const Table& table, Number code, const char* otherwise) noexcep
 
 const char* name(AlState state) noexcept {
     switch (state) {
-        case AlState::None: return "NONE";
-        case AlState::Init: return "INIT";
-        case AlState::PreOp: return "PREOP";
-        case AlState::Boot: return "BOOT";
-        case AlState::SafeOp: return "SAFEOP";
-        case AlState::Op: return "OP";
+        case AlState::None:
+            return "NONE";
+        case AlState::Init:
+            return "INIT";
+        case AlState::PreOp:
+            return "PREOP";
+        case AlState::Boot:
+            return "BOOT";
+        case AlState::SafeOp:
+            return "SAFEOP";
+        case AlState::Op:
+            return "OP";
     }
     return "?";
 }

@@ -1,13 +1,13 @@
-#include <takt/wire/device_description.hpp>
-
 #include <algorithm>
+#include <takt/wire/device_description.hpp>
 
 namespace takt::wire {
 
 const ObjectDescription* DeviceDescription::findObject(std::uint16_t index) const noexcept {
-    const auto found = std::lower_bound(
-        objects.begin(), objects.end(), index,
-        [](const ObjectDescription& object, std::uint16_t wanted) { return object.index < wanted; });
+    const auto found = std::lower_bound(objects.begin(), objects.end(), index,
+                                        [](const ObjectDescription& object, std::uint16_t wanted) {
+                                            return object.index < wanted;
+                                        });
     return found != objects.end() && found->index == index ? &*found : nullptr;
 }
 

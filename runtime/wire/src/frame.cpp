@@ -1,7 +1,6 @@
+#include <algorithm>
 #include <takt/wire/byte_io.hpp>
 #include <takt/wire/frame.hpp>
-
-#include <algorithm>
 
 namespace takt::wire {
 
@@ -18,22 +17,36 @@ constexpr std::array<std::uint8_t, 6> Source{0x00, 0x10, 0x54, 0x41, 0x4B, 0x54}
 
 }  // namespace
 
-std::uint8_t DatagramView::rawCommand() const noexcept { return load8(bytes_, 0); }
-std::uint8_t DatagramView::index() const noexcept { return load8(bytes_, 1); }
-std::uint16_t DatagramView::adp() const noexcept { return load16(bytes_, AddressOffset); }
-std::uint16_t DatagramView::ado() const noexcept { return load16(bytes_, AddressOffset + 2); }
-std::uint32_t DatagramView::logicalAddress() const noexcept { return load32(bytes_, AddressOffset); }
+std::uint8_t DatagramView::rawCommand() const noexcept {
+    return load8(bytes_, 0);
+}
+std::uint8_t DatagramView::index() const noexcept {
+    return load8(bytes_, 1);
+}
+std::uint16_t DatagramView::adp() const noexcept {
+    return load16(bytes_, AddressOffset);
+}
+std::uint16_t DatagramView::ado() const noexcept {
+    return load16(bytes_, AddressOffset + 2);
+}
+std::uint32_t DatagramView::logicalAddress() const noexcept {
+    return load32(bytes_, AddressOffset);
+}
 bool DatagramView::circulating() const noexcept {
     return (load16(bytes_, LengthOffset) & CirculatingBit) != 0;
 }
-std::uint16_t DatagramView::irq() const noexcept { return load16(bytes_, IrqOffset); }
+std::uint16_t DatagramView::irq() const noexcept {
+    return load16(bytes_, IrqOffset);
+}
 std::uint16_t DatagramView::workingCounter() const noexcept {
     return load16(bytes_, bytes_.size() - WorkingCounterSize);
 }
 std::span<std::uint8_t> DatagramView::data() const noexcept {
     return bytes_.subspan(DatagramHeaderSize, bytes_.size() - DatagramOverhead);
 }
-void DatagramView::setAdp(std::uint16_t value) const noexcept { store16(bytes_, AddressOffset, value); }
+void DatagramView::setAdp(std::uint16_t value) const noexcept {
+    store16(bytes_, AddressOffset, value);
+}
 void DatagramView::setCirculating() const noexcept {
     store16(bytes_, LengthOffset,
             static_cast<std::uint16_t>(load16(bytes_, LengthOffset) | CirculatingBit));
@@ -129,8 +142,8 @@ DatagramPlace FrameWriter::append(Command command, std::uint8_t index, std::uint
     return appendRaw(command, index, adp | (std::uint32_t{ado} << 16), length);
 }
 
-DatagramPlace FrameWriter::appendLogical(Command command, std::uint8_t index,
-                                         std::uint32_t address, std::uint16_t length) noexcept {
+DatagramPlace FrameWriter::appendLogical(Command command, std::uint8_t index, std::uint32_t address,
+                                         std::uint16_t length) noexcept {
     return appendRaw(command, index, address, length);
 }
 

@@ -1,5 +1,5 @@
-/// Asks for the machine stop while X moves, resets it, and comes back with a new edge of Enable. Fails,
-/// with a reason, when the machine does not keep its rules.
+/// Asks for the machine stop while X moves, resets it, and comes back with a new edge of Enable.
+/// Fails, with a reason, when the machine does not keep its rules.
 #include <takt/takt.hpp>
 
 namespace {
@@ -26,7 +26,8 @@ public:
             case 1:
                 if (power_.Status || ++waited_ < 50) break;
                 if (!machine.stopped()) return failed(machine, "the stop is not shown");
-                if (power_.ErrorID != takt::axis::ErrorId::MachineStopped) return failed(machine, "MC_Power is silent");
+                if (power_.ErrorID != takt::axis::ErrorId::MachineStopped)
+                    return failed(machine, "MC_Power is silent");
                 machine.resetStop();
                 next();
                 break;
@@ -41,7 +42,8 @@ public:
                 power_.Enable = true;
                 if (power_.Status) return takt::ProgramState::Finished;
                 break;
-            default: break;
+            default:
+                break;
         }
         return takt::ProgramState::Running;
     }

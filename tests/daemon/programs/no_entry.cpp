@@ -1,2 +1,4 @@
 /// A shared library that is no program.
-extern "C" __attribute__((visibility("default"))) int somethingElse() { return 42; }
+extern "C" __attribute__((visibility("default"))) int somethingElse() {
+    return 42;
+}

@@ -1,10 +1,10 @@
-/// Moves X and raises signals in a phase of the motion that the environment names, so that a test hits it
-/// to the cycle: TAKT_TEST_PHASE = enable, homing, acceleration, constant, deceleration or standstill;
-/// TAKT_TEST_SIGNAL = number (2 when absent); TAKT_TEST_COUNT = how many at once (1 when absent).
+/// Moves X and raises signals in a phase of the motion that the environment names, so that a test
+/// hits it to the cycle: TAKT_TEST_PHASE = enable, homing, acceleration, constant, deceleration or
+/// standstill; TAKT_TEST_SIGNAL = number (2 when absent); TAKT_TEST_COUNT = how many at once (1
+/// when absent).
 #include <csignal>
 #include <cstdlib>
 #include <string>
-
 #include <takt/takt.hpp>
 
 namespace {

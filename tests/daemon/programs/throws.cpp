@@ -1,6 +1,5 @@
 /// Sets an axis moving, then throws.
 #include <stdexcept>
-
 #include <takt/takt.hpp>
 
 namespace {

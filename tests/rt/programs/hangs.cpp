@@ -1,6 +1,5 @@
 /// Sets an axis moving and then never comes back.
 #include <atomic>
-
 #include <takt/takt.hpp>
 
 namespace {

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <vector>
-
 #include <takt/daemon/run_options.hpp>
+#include <vector>
 
 namespace takt::cli {
 
-/// The `takt` command. An executable of the machine builder's own calls it with the programs it brings:
+/// The `takt` command. An executable of the machine builder's own calls it with the programs it
+/// brings:
 ///
 ///     int main(int argc, char** argv) {
 ///         std::vector<takt::daemon::LinkedProgram> programs;
@@ -18,9 +18,10 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
 
 template <typename ProgramClass>
 [[nodiscard]] daemon::LinkedProgram linked(std::string name) {
-    return {std::move(name),
-            program::ProgramPtr{new ProgramClass,
-                                program::ProgramDeleter{nullptr, [](program::Program* p) { delete p; }}}};
+    return {
+        std::move(name),
+        program::ProgramPtr{new ProgramClass, program::ProgramDeleter{
+                                                  nullptr, [](program::Program* p) { delete p; }}}};
 }
 
 }  // namespace takt::cli

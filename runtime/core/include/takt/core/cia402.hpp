@@ -24,7 +24,8 @@ inline constexpr std::uint16_t SoftwarePositionLimit = 0x607D;
 inline constexpr std::uint16_t ProfileDeceleration = 0x6084;
 inline constexpr std::uint16_t QuickStopDeceleration = 0x6085;
 inline constexpr std::uint16_t HomingMethod = 0x6098;
-inline constexpr std::uint16_t HomingSpeeds = 0x6099;        ///< :01 search for switch, :02 search for zero
+inline constexpr std::uint16_t HomingSpeeds =
+    0x6099;  ///< :01 search for switch, :02 search for zero
 inline constexpr std::uint16_t HomingAcceleration = 0x609A;
 inline constexpr std::uint16_t TouchProbeFunction = 0x60B8;
 inline constexpr std::uint16_t FollowingErrorActual = 0x60F4;
@@ -49,18 +50,28 @@ enum class DriveState : std::uint8_t {
 /// rt. The state a statusword shows (bits 0 to 3, 5 and 6).
 [[nodiscard]] constexpr DriveState stateOf(std::uint16_t statusword) noexcept {
     switch (statusword & 0x004FU) {
-        case 0x0000: return DriveState::NotReadyToSwitchOn;
-        case 0x0040: return DriveState::SwitchOnDisabled;
-        case 0x000F: return DriveState::FaultReactionActive;
-        case 0x0008: return DriveState::Fault;
-        default: break;
+        case 0x0000:
+            return DriveState::NotReadyToSwitchOn;
+        case 0x0040:
+            return DriveState::SwitchOnDisabled;
+        case 0x000F:
+            return DriveState::FaultReactionActive;
+        case 0x0008:
+            return DriveState::Fault;
+        default:
+            break;
     }
     switch (statusword & 0x006FU) {
-        case 0x0021: return DriveState::ReadyToSwitchOn;
-        case 0x0023: return DriveState::SwitchedOn;
-        case 0x0027: return DriveState::OperationEnabled;
-        case 0x0007: return DriveState::QuickStopActive;
-        default: return DriveState::NotReadyToSwitchOn;
+        case 0x0021:
+            return DriveState::ReadyToSwitchOn;
+        case 0x0023:
+            return DriveState::SwitchedOn;
+        case 0x0027:
+            return DriveState::OperationEnabled;
+        case 0x0007:
+            return DriveState::QuickStopActive;
+        default:
+            return DriveState::NotReadyToSwitchOn;
     }
 }
 
@@ -92,7 +103,7 @@ inline constexpr std::uint16_t Warning = 0x0080;
 inline constexpr std::uint16_t Remote = 0x0200;
 inline constexpr std::uint16_t TargetReached = 0x0400;
 inline constexpr std::uint16_t InternalLimit = 0x0800;
-inline constexpr std::uint16_t HomingAttained = 0x1000;      ///< in homing mode
+inline constexpr std::uint16_t HomingAttained = 0x1000;       ///< in homing mode
 inline constexpr std::uint16_t DriveFollowsCommand = 0x1000;  ///< in the cyclic synchronous modes
 inline constexpr std::uint16_t HomingError = 0x2000;          ///< in homing mode
 inline constexpr std::uint16_t FollowingErrorBit = 0x2000;    ///< in position modes

@@ -24,8 +24,8 @@ struct ObjectReply {
     std::uint32_t abortCode{0};  ///< CiA 301 abort code, 0x05040000 on time-out; 0 unless Failed
 };
 
-/// A device's object dictionary as seen from the cycle: one request at a time per device, answered some
-/// cycles later. So an axis does not know which bus its drive hangs on.
+/// A device's object dictionary as seen from the cycle: one request at a time per device, answered
+/// some cycles later. So an axis does not know which bus its drive hangs on.
 class ObjectAccess {
 public:
     virtual ~ObjectAccess() = default;

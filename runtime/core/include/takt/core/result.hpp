@@ -5,7 +5,8 @@
 
 namespace takt::core {
 
-/// rt. Result of a call in the cyclic path: a value or an error number. Never allocates, never throws.
+/// rt. Result of a call in the cyclic path: a value or an error number. Never allocates, never
+/// throws.
 template <typename T, typename E>
 class [[nodiscard]] Result {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_copyable_v<E>);

@@ -7,7 +7,8 @@
 
 namespace takt::core {
 
-/// A ring between exactly one producer thread and one consumer thread. Allocates at construction only.
+/// A ring between exactly one producer thread and one consumer thread. Allocates at construction
+/// only.
 template <typename T>
 class SpscRing {
     static_assert(std::is_trivially_copyable_v<T>);

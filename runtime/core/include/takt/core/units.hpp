@@ -4,8 +4,8 @@
 
 namespace takt::core {
 
-/// A quantity in powers of the axis' user length unit (mm or degree, fixed per axis) and of seconds.
-/// The same size and cost as a bare double; mixing kinds does not compile.
+/// A quantity in powers of the axis' user length unit (mm or degree, fixed per axis) and of
+/// seconds. The same size and cost as a bare double; mixing kinds does not compile.
 template <int LengthExp, int TimeExp>
 class Quantity {
 public:

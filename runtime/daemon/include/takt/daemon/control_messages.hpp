@@ -6,20 +6,20 @@
 #include <string_view>
 #include <vector>
 
-/// What goes over the control socket: one JSON object in a line, both ways. Everything here is plain data;
-/// only the encoder knows JSON.
+/// What goes over the control socket: one JSON object in a line, both ways. Everything here is
+/// plain data; only the encoder knows JSON.
 namespace takt::daemon {
 
 /// `{"id":7,"do":"inch","axis":"X","distance":0.1,"velocity":5}`
 struct ControlRequest {
     std::uint64_t id{0};  ///< comes back in every reply to it
-    std::string verb{};     ///< "status", "events", or an order: "inch", "power-on", …
+    std::string verb{};   ///< "status", "events", or an order: "inch", "power-on", …
     std::string axis{};
     std::string program{};
     double distance{0.0};
     double velocity{0.0};
     std::uint64_t after{0};  ///< events: those with a higher number
-    std::string who{};         ///< how the client calls itself, for "operated by …"
+    std::string who{};       ///< how the client calls itself, for "operated by …"
 };
 
 /// How far a request has come. Orders get Accepted first when they take time, then their end.

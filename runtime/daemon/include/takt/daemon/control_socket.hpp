@@ -6,18 +6,19 @@
 
 namespace takt::daemon {
 
-/// The folder of control sockets: $XDG_RUNTIME_DIR/takt, else /run/takt where it is ours to write, else
-/// /tmp/takt-<uid>. May not exist yet.
+/// The folder of control sockets: $XDG_RUNTIME_DIR/takt, else /run/takt where it is ours to write,
+/// else /tmp/takt-<uid>. May not exist yet.
 [[nodiscard]] std::filesystem::path controlFolder();
 
 /// Sockets of machines that run now, in the folders a takt of this user may have chosen.
 [[nodiscard]] std::vector<std::filesystem::path> runningMachines();
 
-/// The listening end of a machine's control socket. Belongs to one process at a time: a lock beside it
-/// goes with the process, so that the socket of a killed one is taken over.
+/// The listening end of a machine's control socket. Belongs to one process at a time: a lock beside
+/// it goes with the process, so that the socket of a killed one is taken over.
 class ControlSocket {
 public:
-    /// \param wanted the path the user chose; empty: `<folder>/<machine>.sock`, or with the process id in
+    /// \param wanted the path the user chose; empty: `<folder>/<machine>.sock`, or with the process
+    /// id in
     ///        its name while another takt runs a machine of the same name
     /// \throw std::runtime_error naming path and cause
     ControlSocket(const std::filesystem::path& wanted, const std::string& machine);

@@ -3,10 +3,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
-
 #include <takt/core/time.hpp>
 #include <takt/program/program_library.hpp>
+#include <vector>
 
 namespace takt::daemon {
 
@@ -29,21 +28,23 @@ struct LinkedProgram {
 /// What `takt run` was asked to do.
 struct RunOptions {
     std::filesystem::path machine;
-    std::filesystem::path programLibrary;   ///< replaces the libraries of the machine file; empty = none
+    std::filesystem::path
+        programLibrary;  ///< replaces the libraries of the machine file; empty = none
     std::vector<std::filesystem::path> searchDirs;  ///< for program libraries named without a place
-    std::string interface;                  ///< of the real network; empty = simulated
-    bool fast{false};                       ///< virtual time as fast as it goes, else paced by the wall clock
-    bool manual{false};                     ///< without programs
-    std::optional<core::Duration> length;   ///< stop after so much time in OP
-    std::filesystem::path trace;            ///< CSV; empty = none
-    std::filesystem::path plot;             ///< SVG
-    std::filesystem::path capture;          ///< pcapng
-    /// On the wall clock, for programs of a simulated run: a call that takes longer ends the process.
+    std::string interface;                          ///< of the real network; empty = simulated
+    bool fast{false};    ///< virtual time as fast as it goes, else paced by the wall clock
+    bool manual{false};  ///< without programs
+    std::optional<core::Duration> length;  ///< stop after so much time in OP
+    std::filesystem::path trace;           ///< CSV; empty = none
+    std::filesystem::path plot;            ///< SVG
+    std::filesystem::path capture;         ///< pcapng
+    /// On the wall clock, for programs of a simulated run: a call that takes longer ends the
+    /// process.
     core::Duration programWatchdog{std::chrono::seconds{10}};
-    std::filesystem::path faults;           ///< what goes wrong on the simulated machine; empty = nothing
-    std::filesystem::path socket;           ///< of the control socket; empty = the usual place
-    std::filesystem::path commands;         ///< replays the commands of this file; empty = none
-    std::filesystem::path recordCommands;   ///< writes the commands taken to this file; empty = none
+    std::filesystem::path faults;    ///< what goes wrong on the simulated machine; empty = nothing
+    std::filesystem::path socket;    ///< of the control socket; empty = the usual place
+    std::filesystem::path commands;  ///< replays the commands of this file; empty = none
+    std::filesystem::path recordCommands;  ///< writes the commands taken to this file; empty = none
     bool quiet{false};
 };
 

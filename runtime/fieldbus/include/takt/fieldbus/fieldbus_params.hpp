@@ -3,9 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
-
 #include <takt/core/time.hpp>
+#include <vector>
 
 namespace takt::wire {
 struct DeviceDescription;
@@ -24,7 +23,8 @@ struct PdoEntryParams {
 struct PdoParams {
     std::uint16_t index{0};
     std::vector<PdoEntryParams> entries;
-    bool writeMapping{false};  ///< entries differ from the device's default: write 16xxh/1Axxh in PREOP
+    bool writeMapping{
+        false};  ///< entries differ from the device's default: write 16xxh/1Axxh in PREOP
 };
 
 /// An object written in PREOP at every start.
@@ -57,18 +57,18 @@ struct SlaveParams {
     std::vector<StartupObject> startup;
     DcParams dc;
     core::Duration watchdog{std::chrono::milliseconds{100}};  ///< process-data watchdog
-    std::string origin;              ///< "machine.xml:12", for messages
+    std::string origin;                                       ///< "machine.xml:12", for messages
 };
 
 /// One EtherCAT segment and its cycle.
 struct NetworkParams {
     core::Duration cycle{std::chrono::milliseconds{1}};
-    std::vector<SlaveParams> slaves;             ///< in frame order
-    std::uint32_t lostLimit{3};                  ///< n_lost: consecutive bad cycles tolerated
+    std::vector<SlaveParams> slaves;  ///< in frame order
+    std::uint32_t lostLimit{3};       ///< n_lost: consecutive bad cycles tolerated
     core::Duration sendJitter{std::chrono::microseconds{50}};
-    std::uint32_t dcDriftFrames{10000};          ///< most static drift frames before SAFEOP
+    std::uint32_t dcDriftFrames{10000};  ///< most static drift frames before SAFEOP
     core::Duration dcLimit{std::chrono::microseconds{1}};  ///< 0x092C of every device before OP
-    std::string interface;                       ///< of the real network, empty = not told
+    std::string interface;  ///< of the real network, empty = not told
 };
 
 }  // namespace takt::fieldbus

@@ -8,14 +8,14 @@
 namespace takt::fieldbus {
 
 /// Frames over a network interface by a raw packet socket (AF_PACKET): a network card or one end of
-/// a veth pair. One system call sends all frames of a cycle; waiting for replies is one call as long
-/// as they come together, taking them none.
+/// a veth pair. One system call sends all frames of a cycle; waiting for replies is one call as
+/// long as they come together, taking them none.
 class PacketLink : public wire::Link {
 public:
     /// Opens the interface and takes it for this process alone.
     /// \param maxFrames most frames of one call
-    /// \throw std::runtime_error one line that says what is missing: the interface, that it is down,
-    /// that another takt owns it, or the capability CAP_NET_RAW
+    /// \throw std::runtime_error one line that says what is missing: the interface, that it is
+    /// down, that another takt owns it, or the capability CAP_NET_RAW
     PacketLink(const std::string& interface, std::size_t maxFrames);
     ~PacketLink() override;
     PacketLink(const PacketLink&) = delete;

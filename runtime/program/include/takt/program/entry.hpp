@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-
 #include <takt/program/program.hpp>
 #include <takt/program/version.hpp>
 
@@ -10,11 +9,11 @@ namespace takt::program {
 /// Changes whenever a program built against older headers could not run with a newer library.
 inline constexpr std::uint32_t AbiNumber = 1;
 
-/// What a program library says about itself before any of its code is trusted. Plain C layout, so that it
-/// can be read whatever the other fields say.
+/// What a program library says about itself before any of its code is trusted. Plain C layout, so
+/// that it can be read whatever the other fields say.
 struct ProgramEntry {
     std::uint32_t abi;
-    const char* version;    ///< of takt
+    const char* version;  ///< of takt
     const char* compiler;
     const char* sanitizer;
     Program* (*create)();
@@ -40,15 +39,15 @@ inline constexpr const char* CompilerTag = "gcc";
 }  // namespace takt::program
 
 /// Ends the source of a program library: exports the one C symbol that takt looks for.
-#define TAKT_PROGRAM(Class)                                                                       \
-    extern "C" __attribute__((visibility("default"))) const takt::program::ProgramEntry*          \
-    taktProgramEntry() {                                                                          \
-        static const takt::program::ProgramEntry entry{                                           \
-            takt::program::AbiNumber,                                                             \
-            takt::program::Version,                                                               \
-            takt::program::CompilerTag,                                                           \
-            takt::program::SanitizerTag,                                                          \
-            []() -> takt::program::Program* { return new (Class); },                              \
-            [](takt::program::Program* program) { delete program; }};                             \
-        return &entry;                                                                            \
+#define TAKT_PROGRAM(Class)                                                              \
+    extern "C" __attribute__((visibility("default"))) const takt::program::ProgramEntry* \
+    taktProgramEntry() {                                                                 \
+        static const takt::program::ProgramEntry entry{                                  \
+            takt::program::AbiNumber,                                                    \
+            takt::program::Version,                                                      \
+            takt::program::CompilerTag,                                                  \
+            takt::program::SanitizerTag,                                                 \
+            []() -> takt::program::Program* { return new (Class); },                     \
+            [](takt::program::Program* program) { delete program; }};                    \
+        return &entry;                                                                   \
     }

@@ -10,7 +10,8 @@
 
 namespace takt::program {
 
-/// One value of a program that can be looked at. The program keeps the variable; it must outlive the run.
+/// One value of a program that can be looked at. The program keeps the variable; it must outlive
+/// the run.
 struct Watch {
     std::string name;
     std::function<std::string()> text;  ///< the present value; outside the cycle
@@ -22,9 +23,10 @@ class Inspector {
 public:
     /// \pre `variable` lives as long as the program
     template <typename T>
-        requires std::integral<T> || std::floating_point<T> || std::is_enum_v<T>
+    requires std::integral<T> || std::floating_point<T> || std::is_enum_v<T>
     void watch(std::string_view name, const T& variable) {
-        watches_.push_back({std::string{name}, [&variable] {
+        watches_.push_back({std::string{name},
+                            [&variable] {
                                 if constexpr (std::is_enum_v<T>) {
                                     return std::to_string(
                                         static_cast<std::underlying_type_t<T>>(variable));

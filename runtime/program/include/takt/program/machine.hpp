@@ -4,11 +4,10 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <vector>
-
 #include <takt/axis/axis_port.hpp>
 #include <takt/core/time.hpp>
 #include <takt/core/units.hpp>
+#include <vector>
 
 namespace takt::program {
 
@@ -23,8 +22,8 @@ public:
 
     Machine(std::vector<NamedAxis> axes, core::Duration cycleTime);
 
-    /// The axis of that name in the machine file. An unknown name gives an invalid handle, and the machine
-    /// is refused after `start` with the names that exist. For `start`; costs a search.
+    /// The axis of that name in the machine file. An unknown name gives an invalid handle, and the
+    /// machine is refused after `start` with the names that exist. For `start`; costs a search.
     [[nodiscard]] axis::AxisRef axis(std::string_view name);
 
     /// rt. Number of this call of `cycle`, from 0. Bus cycles when the program runs in every one.
@@ -38,8 +37,9 @@ public:
     /// rt. Says why the program is about to return Failed; up to 200 characters are kept.
     void fail(std::string_view reason) noexcept;
 
-    /// rt. Stops the whole machine: every axis ramps down and is switched off, and stays off until the stop
-    /// is reset and Enable of MC_Power has fallen and risen. The first reason is kept, 100 characters of it.
+    /// rt. Stops the whole machine: every axis ramps down and is switched off, and stays off until
+    /// the stop is reset and Enable of MC_Power has fallen and risen. The first reason is kept, 100
+    /// characters of it.
     void stop(std::string_view reason) noexcept;
     /// rt. The machine stop is latched, whoever asked for it.
     [[nodiscard]] bool stopped() const noexcept { return stopped_; }
@@ -60,8 +60,12 @@ public:
     };
     [[nodiscard]] StopWishes takeStopWishes() noexcept;
     void setStopped(bool stopped) noexcept { stopped_ = stopped; }
-    [[nodiscard]] std::string_view stopReason() const noexcept { return {stopReason_.data(), stopReasonSize_}; }
-    [[nodiscard]] std::string_view failure() const noexcept { return {failure_.data(), failureSize_}; }
+    [[nodiscard]] std::string_view stopReason() const noexcept {
+        return {stopReason_.data(), stopReasonSize_};
+    }
+    [[nodiscard]] std::string_view failure() const noexcept {
+        return {failure_.data(), failureSize_};
+    }
 
 private:
     std::vector<NamedAxis> axes_;

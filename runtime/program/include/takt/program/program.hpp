@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-
 #include <takt/program/inspector.hpp>
 #include <takt/program/machine.hpp>
 
@@ -22,10 +21,10 @@ enum class ProgramState : std::uint8_t {
 ///     };
 ///     TAKT_PROGRAM(Pick)
 ///
-/// `start` runs once while the machine is put together, before any frame is sent: ask for the axes there,
-/// so that a wrong name refuses the machine. It may allocate. `cycle` runs inside the cycle from the
-/// moment all devices are in OP: no allocation, no lock, no file, no endless loop; an exception stops the
-/// program's axes on their path. A program never moves anything after `stop`.
+/// `start` runs once while the machine is put together, before any frame is sent: ask for the axes
+/// there, so that a wrong name refuses the machine. It may allocate. `cycle` runs inside the cycle
+/// from the moment all devices are in OP: no allocation, no lock, no file, no endless loop; an
+/// exception stops the program's axes on their path. A program never moves anything after `stop`.
 class Program {
 public:
     Program() = default;

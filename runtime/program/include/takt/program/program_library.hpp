@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-
 #include <takt/program/program.hpp>
 
 namespace takt::program {
@@ -26,8 +25,8 @@ struct LoadedProgram {
 };
 
 /// Loads a program from a shared library. Refuses, without running any of its code beyond the entry
-/// function: a file that is missing or that others may write, one without entry point, and one built for
-/// another ABI, version, compiler or sanitizer.
+/// function: a file that is missing or that others may write, one without entry point, and one
+/// built for another ABI, version, compiler or sanitizer.
 [[nodiscard]] LoadedProgram loadProgram(const std::filesystem::path& library);
 
 }  // namespace takt::program

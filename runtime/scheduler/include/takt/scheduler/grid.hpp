@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-
 #include <takt/core/clock_source.hpp>
 #include <takt/core/time.hpp>
 
@@ -17,8 +16,8 @@ struct Beat {
     [[nodiscard]] core::Duration lateness() const noexcept { return woke - planned; }
 };
 
-/// The absolute grid of wake-ups. A missed point is skipped, never caught up with (realtime rule: two
-/// cycles never run back to back), and the next wake-up is never computed from "now".
+/// The absolute grid of wake-ups. A missed point is skipped, never caught up with (realtime rule:
+/// two cycles never run back to back), and the next wake-up is never computed from "now".
 class Grid {
 public:
     Grid(core::HostTime first, core::Duration cycle) noexcept : next_{first}, cycle_{cycle} {}

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-
 #include <takt/scheduler/scheduler_params.hpp>
 
 namespace takt::scheduler {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-
 #include <takt/core/time.hpp>
 
 namespace takt::scheduler {
@@ -10,9 +9,9 @@ namespace takt::scheduler {
 struct DcLockParams {
     double proportional{0.08};
     double integral{0.0008};
-    double maxCorrection{0.01};                 ///< of the cycle, per cycle
+    double maxCorrection{0.01};                           ///< of the cycle, per cycle
     core::Duration window{std::chrono::microseconds{8}};  ///< locked below …
-    std::uint32_t windowCycles{100};            ///< … for so many cycles
+    std::uint32_t windowCycles{100};                      ///< … for so many cycles
 };
 
 /// What is done about cycles that were missed. Counts are grid points that passed unused.

@@ -7,7 +7,8 @@ namespace takt::wire {
 
 enum class AlState : std::uint8_t { None = 0, Init = 1, PreOp = 2, Boot = 3, SafeOp = 4, Op = 8 };
 
-inline constexpr std::uint16_t AlErrorBit = 0x0010;  ///< acknowledge in AL control, indication in AL status
+inline constexpr std::uint16_t AlErrorBit =
+    0x0010;  ///< acknowledge in AL control, indication in AL status
 inline constexpr std::uint16_t AlStateMask = 0x000F;
 
 /// "INIT", "PREOP", …

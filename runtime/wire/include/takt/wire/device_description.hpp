@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <takt/core/time.hpp>
 #include <vector>
 
-#include <takt/core/time.hpp>
-
-/// What an ESI file (or an ENI, or a scan's SII) says about one device. The master configures from it and
-/// the twin is built from it. Plain data; filled outside the cycle and never changed afterwards.
+/// What an ESI file (or an ENI, or a scan's SII) says about one device. The master configures from
+/// it and the twin is built from it. Plain data; filled outside the cycle and never changed
+/// afterwards.
 namespace takt::wire {
 
 struct Identity {
@@ -18,7 +18,13 @@ struct Identity {
     std::uint32_t serial{0};
 };
 
-enum class SyncManagerUse : std::uint8_t { Unused = 0, MailboxOut = 1, MailboxIn = 2, Outputs = 3, Inputs = 4 };
+enum class SyncManagerUse : std::uint8_t {
+    Unused = 0,
+    MailboxOut = 1,
+    MailboxIn = 2,
+    Outputs = 3,
+    Inputs = 4
+};
 
 struct SyncManagerDescription {
     SyncManagerUse use{SyncManagerUse::Unused};
@@ -51,9 +57,19 @@ struct PdoDescription {
 
 /// CoE data type numbers (ETG.1000.6 table 64) of the simple types.
 enum class DataType : std::uint16_t {
-    Boolean = 0x01, Integer8 = 0x02, Integer16 = 0x03, Integer32 = 0x04,
-    Unsigned8 = 0x05, Unsigned16 = 0x06, Unsigned32 = 0x07, Real32 = 0x08,
-    VisibleString = 0x09, OctetString = 0x0A, Real64 = 0x11, Integer64 = 0x15, Unsigned64 = 0x1B,
+    Boolean = 0x01,
+    Integer8 = 0x02,
+    Integer16 = 0x03,
+    Integer32 = 0x04,
+    Unsigned8 = 0x05,
+    Unsigned16 = 0x06,
+    Unsigned32 = 0x07,
+    Real32 = 0x08,
+    VisibleString = 0x09,
+    OctetString = 0x0A,
+    Real64 = 0x11,
+    Integer64 = 0x15,
+    Unsigned64 = 0x1B,
 };
 
 enum class PdoMappable : std::uint8_t { No = 0, Receive = 1, Transmit = 2, Both = 3 };
@@ -92,8 +108,8 @@ struct DcMode {
 struct MailboxDescription {
     bool coe{false};
     bool sdoInfo{false};
-    bool pdoAssign{false};      ///< 1C12h/1C13h may be written
-    bool pdoConfig{false};      ///< 16xxh/1Axxh may be written
+    bool pdoAssign{false};  ///< 1C12h/1C13h may be written
+    bool pdoConfig{false};  ///< 16xxh/1Axxh may be written
     bool completeAccess{false};
     core::Duration requestTimeout{std::chrono::milliseconds{100}};
     core::Duration responseTimeout{std::chrono::milliseconds{2000}};
@@ -107,12 +123,12 @@ struct StateTimeouts {
 };
 
 struct DeviceDescription {
-    std::string source;      ///< file the description came from
-    std::string type;        ///< ESI Type text, e.g. "CD300E"
-    std::string name;        ///< readable name
+    std::string source;  ///< file the description came from
+    std::string type;    ///< ESI Type text, e.g. "CD300E"
+    std::string name;    ///< readable name
     std::string vendorName;
     Identity identity;
-    std::string physics;     ///< one letter per port, e.g. "YY"
+    std::string physics;  ///< one letter per port, e.g. "YY"
     std::uint8_t fmmuCount{3};
     std::uint8_t syncManagerCount{4};
     std::uint16_t ramKib{8};

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-
 #include <takt/core/time.hpp>
 #include <takt/wire/frame.hpp>
 
@@ -19,8 +18,8 @@ public:
 
     /// rt. Sends the frames in order; sets each frame's `stamp` to the send time.
     virtual LinkStatus send(std::span<Frame> frames) noexcept = 0;
-    /// rt. Waits until every slot holds a frame or `deadline` has passed. Each frame's `stamp` is its
-    /// arrival time. \return how many slots were filled
+    /// rt. Waits until every slot holds a frame or `deadline` has passed. Each frame's `stamp` is
+    /// its arrival time. \return how many slots were filled
     virtual std::size_t receive(std::span<Frame> slots, core::HostTime deadline) noexcept = 0;
 };
 

@@ -6,7 +6,8 @@
 /// Field positions and numbers of the mailbox and of CoE (ETG.1000.6 clauses 5.6 and 7).
 namespace takt::wire::mbx {
 
-inline constexpr std::size_t HeaderSize = 6;     ///< length 2, address 2, channel/priority 1, type/counter 1
+inline constexpr std::size_t HeaderSize =
+    6;  ///< length 2, address 2, channel/priority 1, type/counter 1
 inline constexpr std::size_t CoeHeaderSize = 2;  ///< number 9 bits, service in bits 12 to 15
 inline constexpr std::size_t SdoHeaderSize = 4;  ///< command, index, sub-index
 inline constexpr std::size_t MinSdoSize = 8;
@@ -14,7 +15,10 @@ inline constexpr std::size_t MinSdoSize = 8;
 enum class Type : std::uint8_t { Error = 0, AoE = 1, EoE = 2, CoE = 3, FoE = 4, SoE = 5, VoE = 15 };
 
 enum class CoeService : std::uint8_t {
-    Emergency = 1, SdoRequest = 2, SdoResponse = 3, SdoInformation = 8,
+    Emergency = 1,
+    SdoRequest = 2,
+    SdoResponse = 3,
+    SdoInformation = 8,
 };
 
 // SDO command bytes, without size and toggle bits.
