@@ -65,19 +65,28 @@ void BringUp::blameNetwork(std::string text) {
 }
 
 void BringUp::blame(std::size_t slave, std::string_view text) {
-    const SlaveParams& params = parts_.network.slaves[slave];
-    problems_.push_back({params.name,
-                         fmt::format("{}: {}", slaveLabel(parts_.network, slave), text),
-                         params.origin});
+    blame(slave, text, parts_.network.slaves[slave].origin);
+}
+
+void BringUp::blame(std::size_t slave, std::string_view text, const std::string& origin) {
+    problems_.push_back({parts_.network.slaves[slave].name,
+                         fmt::format("{}: {}", slaveLabel(parts_.network, slave), text), origin});
 }
 
 std::vector<BringUpProblem> BringUp::run() {
     using Stage = void (BringUp::*)();
-    constexpr std::array<Stage, 9> stages{
+    constexpr std::array<Stage, 10> worked{
         &BringUp::checkParams, &BringUp::countDevices,   &BringUp::resetDevices,
         &BringUp::scan,        &BringUp::compareDevices, &BringUp::measureClocks,
-        &BringUp::configure,   &BringUp::settleClocks,   &BringUp::armSync};
-    for (const Stage stage : stages) {
+        &BringUp::configure,   &BringUp::writeObjects,   &BringUp::settleClocks,
+        &BringUp::armSync};
+    // A list clears the clocks of all devices on the way to PREOP, so they are measured behind it.
+    constexpr std::array<Stage, 10> listed{
+        &BringUp::checkParams,  &BringUp::countDevices,   &BringUp::resetDevices,
+        &BringUp::scan,         &BringUp::compareDevices, &BringUp::configure,
+        &BringUp::measureClocks, &BringUp::writeObjects,  &BringUp::settleClocks,
+        &BringUp::armSync};
+    for (const Stage stage : parts_.network.listed ? listed : worked) {
         (this->*stage)();
         if (!problems_.empty()) break;
     }
@@ -94,34 +103,40 @@ void BringUp::checkParams() {
                         "bytes; map fewer objects",
                         wire::MaxFrameSize));
     }
-    for (std::size_t i = 0; i < network.slaves.size(); ++i) {
-        const SlaveParams& slave = network.slaves[i];
-        if (!slave.device) {
-            blame(i, "has no device description");
+    for (std::size_t i = 0; i < network.slaves.size(); ++i) checkSlave(i);
+}
+
+void BringUp::checkSlave(std::size_t i) {
+    const SlaveParams& slave = parts_.network.slaves[i];
+    if (!slave.device) {
+        blame(i, "has no device description");
+        return;
+    }
+    if (parts_.network.listed && !slave.listed) {
+        blame(i, "has no list of commands, as the other devices have");
+        return;
+    }
+    if (slave.position != i) {
+        blame(i, fmt::format("is configured for position {}; devices must be listed in frame "
+                             "order",
+                             slave.position));
+    }
+    for (const StartupObject& object : slave.startup) {
+        if (!object.data.empty() && object.data.size() <= sizeof(core::ObjectValue::bytes))
             continue;
-        }
-        if (slave.position != i) {
-            blame(i, fmt::format("is configured for position {}; devices must be listed in frame "
-                                 "order",
-                                 slave.position));
-        }
-        for (const StartupObject& object : slave.startup) {
-            if (!object.data.empty() && object.data.size() <= sizeof(core::ObjectValue::bytes))
-                continue;
-            blame(i, fmt::format(
-                         "start-up object {:04X}h:{:02X} ({}) has {} bytes, allowed are 1 to 8",
-                         object.index, object.subindex, object.origin, object.data.size()));
-        }
-        if (slave.watchdog.count() <= 0) {
-            blame(i,
-                  "the process-data watchdog must not be off: outputs would stay on when the "
-                  "controller dies");
-        }
-        const bool objects = !slave.startup.empty() || !makePdoScript(slave).empty();
-        if (objects && !(slave.device->mailbox && slave.device->mailbox->coe)) {
-            blame(i,
-                  "start-up objects or PDOs are to be written, but the device has no CoE mailbox");
-        }
+        blame(i,
+              fmt::format("start-up object {:04X}h:{:02X} ({}) has {} bytes, allowed are 1 to 8",
+                          object.index, object.subindex, object.origin, object.data.size()));
+    }
+    if (slave.watchdog.count() <= 0) {
+        blame(i,
+              "the process-data watchdog must not be off: outputs would stay on when the "
+              "controller dies");
+    }
+    const bool objects = !slave.startup.empty() || !makePdoScript(slave).empty() ||
+                         (slave.listed && !slave.listed->objects.empty());
+    if (objects && !(slave.device->mailbox && slave.device->mailbox->coe)) {
+        blame(i, "start-up objects or PDOs are to be written, but the device has no CoE mailbox");
     }
 }
 
@@ -161,7 +176,7 @@ void BringUp::resetDevices() {
 void BringUp::assignAddresses() {
     for (std::size_t i = 0; i < count_; ++i) {
         std::array<std::uint8_t, 2> data{};
-        wire::store16(data, 0, stationOf(i));
+        wire::store16(data, 0, stationOf(parts_.network, i));
         const auto position = static_cast<std::uint16_t>(0U - i);
         const Reply reply = talk_.ask({Command::Apwr, position, reg::StationAddress, 2, data});
         if (reply.workingCounter != 1) {
@@ -176,7 +191,7 @@ void BringUp::scan() {
     scans.reserve(count_);
     std::vector<AcyclicMachine*> machines;
     for (std::size_t i = 0; i < count_; ++i) {
-        machines.push_back(&scans.emplace_back(stationOf(i)));
+        machines.push_back(&scans.emplace_back(stationOf(parts_.network, i)));
     }
     AcyclicSlice slice{count_};
     talk_.run(slice, machines);
@@ -244,7 +259,7 @@ void BringUp::measureClocks() {
         ports[i].dc = found_[i].has(reg::FeatureDc);
         if (!ports[i].dc) continue;
         const Reply reply =
-            talk_.ask(readRequest(stationOf(i), reg::DcReceiveTimePort0, readBytes));
+            talk_.ask(readRequest(stationOf(parts_.network, i), reg::DcReceiveTimePort0, readBytes));
         if (!reply.served()) {
             blame(i, "its receive times cannot be read");
             return;
@@ -256,10 +271,21 @@ void BringUp::measureClocks() {
                        : std::uint64_t{wire::load32(reply.data, unitTimeAt)};
         if (!parts_.reference.present()) {
             referenceSlave_ = i;
-            parts_.reference.lead(stationOf(i), found_[i].has(reg::FeatureDc64));
+            leadReference();
         }
     }
     writeClocks(latched, local, propagationDelays(ports));
+}
+
+/// The list may have another datagram hand the time round than the master would.
+void BringUp::leadReference() {
+    const std::uint16_t station = stationOf(parts_.network, referenceSlave_);
+    const bool wide = found_[referenceSlave_].has(reg::FeatureDc64);
+    for (const PlannedDatagram& datagram : parts_.plan.datagrams) {
+        if (datagram.kind == CyclicCommand::Kind::ReferenceTime) {
+            parts_.reference.lead(station, wide, datagram);
+        }
+    }
 }
 
 void BringUp::writeClocks(core::HostTime latched, std::span<const std::uint64_t> local,
@@ -276,7 +302,7 @@ void BringUp::writeClocks(core::HostTime latched, std::span<const std::uint64_t>
         wire::store32(data, 8, delays[i]);
         std::array<std::uint8_t, 2> speed{};
         wire::store16(speed, 0, 0x1000);
-        const std::uint16_t station = stationOf(i);
+        const std::uint16_t station = stationOf(parts_.network, i);
         const bool written =
             talk_.ask(writeRequest(station, reg::DcSystemTimeOffset, data)).served() &&
             talk_.ask(writeRequest(station, reg::DcSpeedCounterStart, speed)).served();
@@ -293,7 +319,7 @@ void BringUp::settleClocks() {
     std::vector<std::uint16_t> followers;
     for (std::size_t i = 0; i < count_; ++i) {
         if (found_[i].has(reg::FeatureDc) && i != referenceSlave_)
-            followers.push_back(stationOf(i));
+            followers.push_back(stationOf(parts_.network, i));
     }
     FrameSet& frames = talk_.frames();
     std::vector<DatagramId> reads;
@@ -352,10 +378,19 @@ void BringUp::armSync() {
 // -----------------------------------------------------------------------------------------------
 
 void BringUp::configure() {
+    constexpr auto up = static_cast<std::size_t>(Transition::InitToPreOp);
     say("configuring devices");
     for (const auto& agent : parts_.agents) agent->reset();
-    runScript(&SlaveScripts::toPreOp);
+    parts_.everyone.reset();
+    runCommon(parts_.common.before[up]);
+    if (problems_.empty()) runScript(&SlaveScripts::toPreOp);
+    if (problems_.empty()) runCommon(parts_.common.after[up]);
     if (problems_.empty()) say("all devices are in PREOP");
+}
+
+void BringUp::writeObjects() {
+    runCommon(parts_.common.before[static_cast<std::size_t>(Transition::PreOpToSafeOp)]);
+    if (problems_.empty()) runScript(&SlaveScripts::inPreOp);
 }
 
 void BringUp::runScript(Script SlaveScripts::*script) {
@@ -368,8 +403,24 @@ void BringUp::runScript(Script SlaveScripts::*script) {
         for (const ScriptNote& note : agent.notes()) {
             say(fmt::format("{}: {}", slaveLabel(parts_.network, i), describe(note)));
         }
-        if (const Step* step = agent.failedStep()) blame(i, describe(agent.failure(), *step));
+        const Step* const step = agent.failedStep();
+        if (step == nullptr) continue;
+        const auto* const listed = std::get_if<CommandStep>(step);
+        blame(i, describe(agent.failure(), *step),
+              listed != nullptr ? listed->command.origin : parts_.network.slaves[i].origin);
     }
+}
+
+void BringUp::runCommon(const Script& script) {
+    if (script.empty()) return;
+    parts_.everyone.run(script);
+    talk_.run(parts_.slice, parts_.machines);
+    const Step* const step = parts_.everyone.failedStep();
+    if (step == nullptr) return;
+    problems_.push_back(
+        {{},
+         fmt::format("network: {}", describe(parts_.everyone.failure(), *step)),
+         std::get<CommandStep>(*step).command.origin});
 }
 
 }  // namespace takt::fieldbus::ethercat

@@ -48,10 +48,19 @@ bool CoeClient::startRead(core::ObjectAddress address) noexcept {
 }
 
 bool CoeClient::startWrite(core::ObjectAddress address, const core::ObjectValue& value) noexcept {
+    if (pending()) return false;
+    value_ = value;
+    const std::size_t size = value.size <= value.bytes.size() ? value.size : 0;
+    return startWrite(address, std::span{value_.bytes}.first(size), false);
+}
+
+bool CoeClient::startWrite(core::ObjectAddress address, std::span<const std::uint8_t> data,
+                           bool completeAccess) noexcept {
     if (!begin(address)) return false;
     writing_ = true;
-    value_ = value;
-    if (value.size == 0 || value.size > value.bytes.size()) {
+    data_ = data;
+    completeAccess_ = completeAccess;
+    if (data.empty()) {
         finish(core::ObjectState::Failed, abortcode::LengthMismatch);
     } else {
         transmit();
@@ -66,7 +75,8 @@ void CoeClient::refuse(std::uint32_t abortCode) noexcept {
 void CoeClient::transmit() noexcept {
     mailbox_.withdraw();
     const std::span<std::uint8_t> body = mailbox_.body();
-    constexpr std::size_t longest = DataAt + 4 + sizeof(core::ObjectValue::bytes);
+    const std::size_t longest =
+        DataAt + 4 + std::max(writing_ ? data_.size() : 0, sizeof(core::ObjectValue::bytes));
     if (body.size() < longest) {
         finish(core::ObjectState::Failed, abortcode::TooLongForMailbox);
         return;
@@ -82,16 +92,18 @@ void CoeClient::transmit() noexcept {
         body[SdoAt] = mbx::UploadRequest;
     } else {
         std::size_t at = DataAt;
-        if (value_.size <= ExpeditedSize) {
-            body[SdoAt] = expeditedDownload(value_.size);
+        if (data_.size() <= ExpeditedSize) {
+            body[SdoAt] = expeditedDownload(data_.size());
         } else {
             body[SdoAt] = mbx::DownloadRequest | mbx::SizeIndicated;
-            wire::store32(body, DataAt, value_.size);
+            wire::store32(body, DataAt, static_cast<std::uint32_t>(data_.size()));
             at += 4;
-            length = at + value_.size;
+            length = at + data_.size();
         }
-        std::copy_n(value_.bytes.begin(), value_.size,
-                    body.begin() + static_cast<std::ptrdiff_t>(at));
+        if (completeAccess_) {
+            body[SdoAt] = static_cast<std::uint8_t>(body[SdoAt] | mbx::CompleteAccess);
+        }
+        std::copy(data_.begin(), data_.end(), body.begin() + static_cast<std::ptrdiff_t>(at));
     }
     mailbox_.post(mbx::Type::CoE, length);
     mailbox_.expect(true);

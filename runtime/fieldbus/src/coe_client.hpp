@@ -23,6 +23,10 @@ public:
     bool startRead(core::ObjectAddress address) noexcept;
     /// rt. \return false while another request is pending
     bool startWrite(core::ObjectAddress address, const core::ObjectValue& value) noexcept;
+    /// rt. The same with as many bytes as the mailbox holds; they must outlive the request. With
+    /// `completeAccess` the object as a whole, from the sub-index on.
+    bool startWrite(core::ObjectAddress address, std::span<const std::uint8_t> data,
+                    bool completeAccess) noexcept;
     /// rt. Ends the request at once with this abort code; for what needs no mailbox to be refused.
     void refuse(std::uint32_t abortCode) noexcept;
     [[nodiscard]] const core::ObjectReply& reply() const noexcept { return reply_; }
@@ -52,6 +56,8 @@ private:
     core::Duration responseTimeout_;
     core::ObjectAddress address_{};
     core::ObjectValue value_{};
+    std::span<const std::uint8_t> data_{};  ///< to be written
+    bool completeAccess_{false};
     bool writing_{false};
     bool timed_{false};
     std::uint8_t tries_{0};

@@ -10,6 +10,7 @@
 #include "acyclic.hpp"
 #include "al_walker.hpp"
 #include "coe_client.hpp"
+#include "command_runner.hpp"
 #include "mailbox.hpp"
 #include "slave_script.hpp"
 
@@ -23,7 +24,9 @@ struct ScriptFailure {
         ObjectAborted,
         StateRefused,
         StateTimedOut,
-        StateSilent
+        StateSilent,
+        CommandUnanswered,  ///< a listed command got no reply or a wrong working counter
+        CommandMismatch,    ///< what it read is not what the list wants
     };
 
     Kind kind{Kind::None};
@@ -32,6 +35,7 @@ struct ScriptFailure {
     std::uint32_t abortCode{0};
     wire::AlState target{wire::AlState::None};
     AlReading seen{};
+    std::uint32_t number{0};  ///< working counter or first bytes that a listed command brought
 };
 
 /// An optional object that the device refused.
@@ -89,7 +93,7 @@ public:
     [[nodiscard]] core::ObjectReply reply() const noexcept override { return userReply_; }
 
 private:
-    enum class Job : std::uint8_t { None, Status, Difference, Walk, Register, Mailbox };
+    enum class Job : std::uint8_t { None, Status, Difference, Walk, Register, Command, Mailbox };
 
     struct Coe {
         Coe(const MailboxPlace& place, const wire::MailboxDescription& description)
@@ -105,6 +109,9 @@ private:
     void takeStatus(const Reply& reply) noexcept;
     void takeDifference(const Reply& reply) noexcept;
     void takeRegister(const Reply& reply) noexcept;
+    void startCommandStep(const CommandStep& step) noexcept;
+    void takeCommand(core::HostTime now, const Reply& reply) noexcept;
+    void endCommandStep(const ListedCommand& command) noexcept;
     void afterMailbox() noexcept;
     void endStateStep() noexcept;
     void startObjectStep(const ObjectStep& step) noexcept;
@@ -119,6 +126,7 @@ private:
     std::size_t number_;
     std::optional<Coe> coe_;
     AlWalker walker_;
+    CommandRunner runner_;
     AlReading al_{};
     bool answers_{true};
     std::optional<core::Duration> difference_;
