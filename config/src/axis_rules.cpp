@@ -151,7 +151,7 @@ SlavePart* tieToSlave(const AxisPart& axis, const ElementReader& drive, NetworkP
     }
     slave->hasAxis = true;
     if (!slave->params.device) return nullptr;
-    checkCyclicPositionEntries(*slave);
+    checkCyclicPositionEntries(*slave, axis.params.drive.bound);
     if (!slave->params.dc.enabled) {
         slave->reader.diagnostics().warning(
             slave->reader.place(),

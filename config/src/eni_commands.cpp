@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <takt/wire/frame.hpp>
+#include <takt/wire/registers.hpp>
 
 #include "numbers.hpp"
 
@@ -211,6 +212,12 @@ std::optional<std::vector<std::uint8_t>> writtenAt(const ListedCommand& command,
     if (!writes || address < command.ado || at + size > command.data.size()) return std::nullopt;
     const auto first = command.data.begin() + static_cast<std::ptrdiff_t>(at);
     return std::vector<std::uint8_t>{first, first + static_cast<std::ptrdiff_t>(size)};
+}
+
+bool isSyncManagerStatus(std::uint16_t address) noexcept {
+    constexpr std::uint16_t managers = 16;
+    return address >= wire::reg::SyncManager &&
+           address < wire::reg::SyncManager + managers * wire::reg::SyncManagerSize;
 }
 
 std::vector<ListedCommand> readInitCommands(XmlElement initCommands, const EsiValues& values) {

@@ -32,4 +32,7 @@ namespace takt::config {
 [[nodiscard]] std::optional<std::vector<std::uint8_t>> writtenAt(
     const fieldbus::ListedCommand& command, std::uint16_t address, std::size_t size);
 
+/// An address in the registers of the SyncManagers, where FMMUs find the state of mailboxes.
+[[nodiscard]] bool isSyncManagerStatus(std::uint16_t address) noexcept;
+
 }  // namespace takt::config

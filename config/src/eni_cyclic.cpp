@@ -194,7 +194,8 @@ std::vector<Mapping> mappingsOf(const EniSlave& slave) {
             const auto at =
                 static_cast<std::uint16_t>(wire::reg::Fmmu + n * wire::reg::FmmuSize);
             const auto data = writtenAt(command, at, wire::reg::FmmuSize);
-            if (!data || ((*data)[12] & 1U) == 0 || word(*data, 8) < wire::reg::ProcessRam) continue;
+            // The state of a mailbox lies in the SyncManager registers and is no process data.
+            if (!data || ((*data)[12] & 1U) == 0 || isSyncManagerStatus(word(*data, 8))) continue;
             const std::uint64_t start = word(*data, 0) | std::uint64_t{word(*data, 2)} << 16U;
             const std::uint64_t last = start + word(*data, 4) - 1;
             mappings.push_back({8 * start + (*data)[6],
@@ -282,11 +283,14 @@ void checkCounter(const EniNetwork& network, const CyclicCommand& command, int l
 
 }  // namespace
 
-void readEniCyclic(XmlElement config, const MailboxStateArea& mailboxStates, EniNetwork& network,
-                   const EsiValues& values) {
+void readEniImage(XmlElement config, EniNetwork& network, const EsiValues& values) {
     const XmlElement image = config.child("ProcessImage");
     network.outputs = readVariables(image.child("Outputs"), network.listed.outputBytes, values);
     network.inputs = readVariables(image.child("Inputs"), network.listed.inputBytes, values);
+}
+
+void readEniCyclic(XmlElement config, const MailboxStateArea& mailboxStates, EniNetwork& network,
+                   const EsiValues& values) {
     const auto cyclics = config.children("Cyclic");
     if (cyclics.size() != 1) {
         values.error(cyclics.empty() ? config.line() : cyclics[1].line(),

@@ -12,7 +12,10 @@ struct MailboxStateArea {
     std::uint32_t bits{0};
 };
 
-/// Reads <Cyclic> and <ProcessImage> into `network`.
+/// Reads <ProcessImage>.
+void readEniImage(XmlElement config, EniNetwork& network, const EsiValues& values);
+
+/// Reads <Cyclic>. \pre image and slaves have been read
 void readEniCyclic(XmlElement config, const MailboxStateArea& mailboxStates, EniNetwork& network,
                    const EsiValues& values);
 

@@ -155,8 +155,7 @@ void takeFmmus(EniSlave& slave) {
             const auto data = writtenAt(command, at, reg::FmmuSize);
             if (!data || ((*data)[12] & 1U) == 0) continue;
             if (fmmus.size() <= n) fmmus.resize(n + 1, wire::FmmuUse::Unused);
-            const std::uint16_t physical = wire::load16(*data, 8);
-            const bool status = physical >= reg::SyncManager && physical < reg::ProcessRam;
+            const bool status = isSyncManagerStatus(wire::load16(*data, 8));
             fmmus[n] = status                           ? wire::FmmuUse::MailboxState
                        : ((*data)[11] & readType) != 0 ? wire::FmmuUse::Inputs
                                                        : wire::FmmuUse::Outputs;
@@ -331,6 +330,35 @@ void readDc(XmlElement element, EniSlave& slave, const EsiValues& values) {
     slave.device.dcModes.push_back(mode);
 }
 
+// --- watchdog
+// -------------------------------------------------------------------------------------
+
+void readWatchdog(EniSlave& slave, const EsiValues& values) {
+    constexpr std::int64_t tick = 40;  // ns
+    std::int64_t divider = 2498;
+    std::int64_t units = 1000;
+    int line = slave.place.line;
+    for (const fieldbus::ListedCommand& command : slave.listed.commands) {
+        if (const auto data = writtenAt(command, reg::WatchdogDivider, 2)) {
+            divider = wire::load16(*data, 0);
+        }
+        if (const auto data = writtenAt(command, reg::WatchdogTimeProcessData, 2)) {
+            units = wire::load16(*data, 0);
+            line = lineOf(command.origin);
+        }
+    }
+    slave.watchdog = core::Duration{units * (divider + 2) * tick};
+    if (units != 0) return;
+    if (slave.listed.outputs.bits != 0) {
+        values.error(line,
+                     fmt::format("slave '{}': the process-data watchdog is off: outputs would stay "
+                                 "on when the controller dies",
+                                 slave.name),
+                     "a time at register 0x0420");
+    }
+    slave.watchdog = std::chrono::milliseconds{100};  // of no meaning without outputs
+}
+
 }  // namespace
 
 void readEniDevice(XmlElement element, EniSlave& slave, const EsiValues& values) {
@@ -347,6 +375,7 @@ void readEniDevice(XmlElement element, EniSlave& slave, const EsiValues& values)
     slave.inputs = assigned(device.txPdos);
     makeDictionary(slave);
     readDc(element, slave, values);
+    readWatchdog(slave, values);
 }
 
 }  // namespace takt::config

@@ -240,13 +240,7 @@ void readConfig(XmlElement config, EniNetwork& network, const EsiValues& values)
     const MailboxStateArea area{
         static_cast<std::uint32_t>(values.child(states, "StartAddr", 0, most32, 0)),
         static_cast<std::uint32_t>(values.child(states, "Count", 0, 0xFFFF, 0))};
-    const XmlElement image = config.child("ProcessImage");
-    constexpr std::int64_t largestImage = 1'000'000;
-    fieldbus::ListedNetwork sizes;
-    sizes.outputBytes = static_cast<std::uint32_t>(
-        values.child(image.child("Outputs"), "ByteSize", 0, largestImage, 0));
-    sizes.inputBytes = static_cast<std::uint32_t>(
-        values.child(image.child("Inputs"), "ByteSize", 0, largestImage, 0));
+    readEniImage(config, network, values);
     const auto elements = config.children("Slave");
     constexpr std::size_t mostSlaves = 1000;
     if (elements.empty() || elements.size() > mostSlaves) {
@@ -255,7 +249,7 @@ void readConfig(XmlElement config, EniNetwork& network, const EsiValues& values)
         return;
     }
     for (const XmlElement element : elements) {
-        network.slaves.push_back(readSlave(element, network.slaves.size(), sizes, values));
+        network.slaves.push_back(readSlave(element, network.slaves.size(), network.listed, values));
         EniSlave& slave = network.slaves.back();
         fitPdos(slave.outputs, slave.listed.outputs, slave, "Send", values);
         fitPdos(slave.inputs, slave.listed.inputs, slave, "Recv", values);

@@ -10,6 +10,7 @@ namespace {
 using wire::Command;
 
 constexpr std::uint8_t LostTries = 5;
+constexpr core::Duration CommandGap = std::chrono::milliseconds{1};
 constexpr core::Duration LookGap = std::chrono::microseconds{250};
 
 /// The first four bytes as far as they are there, through the mask.
@@ -75,7 +76,7 @@ void CommandRunner::start(const ListedCommand& command) noexcept {
     command_ = &command;
     result_ = Result::Busy;
     timed_ = false;
-    notBefore_ = {};
+    notBefore_ = nextCommand_;
     wrong_ = 0;
     lost_ = 0;
     seen_ = 0;
@@ -85,6 +86,7 @@ bool CommandRunner::next(core::HostTime now, Request& request) noexcept {
     if (result_ != Result::Busy || now < notBefore_) return false;
     if (!timed_) {
         timed_ = true;
+        nextCommand_ = now + CommandGap;
         deadline_ = now;
         if (command_->validation) deadline_ += command_->validation->timeout;
     }

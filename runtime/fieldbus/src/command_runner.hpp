@@ -10,6 +10,8 @@ namespace takt::fieldbus::ethercat {
 
 /// Sends one listed command until it has done what the list wants of it: the working counter within
 /// its retries, the validation within its time. A lost frame is repeated whatever the list says.
+/// Commands follow each other at the pace of a usual cycle: lists are written for masters that send
+/// one in each, and a device that is still at work on the last one would pass over the next.
 class CommandRunner {
 public:
     enum class Result : std::uint8_t {
@@ -40,6 +42,7 @@ private:
     bool timed_{false};
     core::HostTime deadline_{};
     core::HostTime notBefore_{};
+    core::HostTime nextCommand_{};
     std::uint32_t wrong_{0};
     std::uint8_t lost_{0};
     std::uint32_t seen_{0};

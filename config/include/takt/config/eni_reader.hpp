@@ -32,6 +32,7 @@ struct EniSlave {
     std::vector<fieldbus::PdoParams> outputs;  ///< assigned ones, in order
     std::vector<fieldbus::PdoParams> inputs;
     fieldbus::DcParams dc;
+    core::Duration watchdog{std::chrono::milliseconds{100}};  ///< as delivered unless it is written
     fieldbus::ListedSlave listed;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <takt/axis/axis_params.hpp>
 #include <takt/axis/machine_stop_params.hpp>
@@ -21,6 +22,9 @@ struct MachineConfig {
     std::vector<axis::AxisParams> axes;
     std::vector<program::ProgramParams> programs;
     axis::MachineStopParams machineStop;  ///< inputs name slaves and mapped entries that exist
+    /// What stands on the simulated network, one for each slave; what is configured unless the file
+    /// says otherwise.
+    std::vector<std::shared_ptr<const wire::DeviceDescription>> twinDevices;
     twin::TwinParams twin;  ///< one device for each slave, defaults where <Twin> is silent
 };
 
