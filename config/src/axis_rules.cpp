@@ -136,6 +136,7 @@ SlavePart* tieToSlave(const AxisPart& axis, const ElementReader& drive, NetworkP
     const std::string& name = axis.params.drive.slave;
     if (name.empty()) return nullptr;
     SlavePart* const slave = network.find(name);
+    if (slave == nullptr && !network.slavesKnown) return nullptr;
     if (slave == nullptr) {
         std::string known;
         for (const SlavePart& other : network.slaves) {

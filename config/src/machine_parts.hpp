@@ -36,6 +36,7 @@ struct NetworkPart {
     std::vector<SlavePart> slaves;
     Catalogue catalogue;
     std::optional<EniNetwork> eni;
+    bool slavesKnown{true};  ///< false: a network file that could not be read, which was told
 
     [[nodiscard]] SlavePart* find(std::string_view name) noexcept {
         for (SlavePart& slave : slaves) {

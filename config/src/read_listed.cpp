@@ -146,6 +146,7 @@ void readListedSlaves(NetworkPart& network, const std::filesystem::path& file,
                                    "the slaves come from the network file",
                                    "no <Slave> beside eni=\"…\"");
     }
+    network.slavesKnown = false;
     std::error_code fault;
     if (!std::filesystem::is_regular_file(file, fault)) {
         reader.error("eni", fmt::format("there is no network file {}", file.string()),
@@ -154,6 +155,7 @@ void readListedSlaves(NetworkPart& network, const std::filesystem::path& file,
     }
     network.eni = readEni(file, reader.diagnostics());
     if (!network.eni) return;
+    network.slavesKnown = true;
     if (cycle && *cycle != network.eni->cycle) {
         reader.error("cycle",
                      fmt::format("the cycle is {} us in the network file",

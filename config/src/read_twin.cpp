@@ -150,7 +150,7 @@ twin::TwinParams readTwin(ElementReader reader, NetworkPart& network,
                                         [&](const auto& device) { return device.slave == name; });
         if (!name.empty()) deviceReader.relabel(fmt::format("twin of '{}'", name));
         if (found == params.devices.end()) {
-            if (!name.empty()) {
+            if (!name.empty() && network.slavesKnown) {
                 deviceReader.error("slave", fmt::format("there is no slave '{}'", name),
                                    "the slaves of <Network>");
             }

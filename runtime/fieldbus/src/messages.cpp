@@ -12,12 +12,12 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-constexpr const char* OrderHint = "check the ESI file or the order of the devices";
-
-void compareNumber(Lines& lines, const char* what, std::uint32_t expected, std::uint32_t found) {
+void compareNumber(Lines& lines, const SlaveParams& slave, const char* what,
+                   std::uint32_t expected, std::uint32_t found) {
     if (expected == found) return;
-    lines.push_back(
-        fmt::format("expected {} {:#010x}, found {:#010x}; {}", what, expected, found, OrderHint));
+    lines.push_back(fmt::format(
+        "expected {} {:#010x}, found {:#010x}; check the {} file or the order of the devices", what,
+        expected, found, slave.listed ? "network" : "ESI"));
 }
 
 void compareRevision(Lines& lines, const SlaveParams& expected, std::uint32_t found) {
@@ -26,7 +26,7 @@ void compareRevision(Lines& lines, const SlaveParams& expected, std::uint32_t fo
         case RevisionRule::Ignore:
             return;
         case RevisionRule::Equal:
-            compareNumber(lines, "revision", wanted, found);
+            compareNumber(lines, expected, "revision", wanted, found);
             return;
         case RevisionRule::EqualOrGreater:
             if (found >= wanted) return;
@@ -131,8 +131,8 @@ std::string describe(const wire::Identity& identity) {
 std::vector<std::string> compare(const SlaveParams& expected, const ScannedDevice& found) {
     Lines lines;
     const wire::Identity& wanted = expected.device->identity;
-    compareNumber(lines, "vendor", wanted.vendor, found.identity.vendor);
-    compareNumber(lines, "product", wanted.product, found.identity.product);
+    compareNumber(lines, expected, "vendor", wanted.vendor, found.identity.vendor);
+    compareNumber(lines, expected, "product", wanted.product, found.identity.product);
     compareRevision(lines, expected, found.identity.revision);
     if (!lines.empty()) return lines;  // another device: what it can do means nothing here
     // A list sets the mailbox up as it likes, within what the device takes.
