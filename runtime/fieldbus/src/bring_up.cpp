@@ -282,9 +282,17 @@ void BringUp::leadReference() {
     const std::uint16_t station = stationOf(parts_.network, referenceSlave_);
     const bool wide = found_[referenceSlave_].has(reg::FeatureDc64);
     for (const PlannedDatagram& datagram : parts_.plan.datagrams) {
-        if (datagram.kind == CyclicCommand::Kind::ReferenceTime) {
-            parts_.reference.lead(station, wide, datagram);
-        }
+        if (datagram.kind != CyclicCommand::Kind::ReferenceTime) continue;
+        parts_.reference.lead(station, wide, datagram);
+        if (!parts_.network.listed) continue;
+        const auto address = static_cast<std::uint16_t>(datagram.address);
+        const bool own = datagram.command == wire::Command::Armw
+                             ? static_cast<std::uint16_t>(address + referenceSlave_) == 0
+                             : address == station;
+        if (own) continue;
+        blame(referenceSlave_,
+              "is the first with distributed clocks, but the list takes the time from another "
+              "device");
     }
 }
 
