@@ -39,8 +39,8 @@ struct WantedIdentity {
 /// Reads the <Esi> files of <Network>.
 [[nodiscard]] Catalogue readCatalogue(ElementReader& network, const std::filesystem::path& folder);
 
-/// The device wanted; of several the one with the highest revision. \return nullptr, after a message
-/// at the attribute `device` or at a number of the identity, when there is none
+/// The device wanted; of several the one with the highest revision. \return nullptr, after a
+/// message at the attribute `device` or at a number of the identity, when there is none
 [[nodiscard]] std::shared_ptr<const wire::DeviceDescription> selectDevice(
     const std::string& type, const WantedIdentity& wanted, const ElementReader& reader,
     Catalogue& catalogue);

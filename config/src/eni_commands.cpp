@@ -30,8 +30,8 @@ struct TransitionName {
 };
 
 constexpr std::array TransitionNames{
-    TransitionName{"IP", Transition::InitToPreOp},   TransitionName{"PS", Transition::PreOpToSafeOp},
-    TransitionName{"SO", Transition::SafeOpToOp},    TransitionName{"OS", Transition::OpToSafeOp},
+    TransitionName{"IP", Transition::InitToPreOp}, TransitionName{"PS", Transition::PreOpToSafeOp},
+    TransitionName{"SO", Transition::SafeOpToOp}, TransitionName{"OS", Transition::OpToSafeOp},
     TransitionName{"SP", Transition::SafeOpToPreOp}, TransitionName{"PI", Transition::PreOpToInit},
     // It goes down step by step and never by way of BOOT, so these have nothing to add.
     TransitionName{"OP", {}}, TransitionName{"OI", {}}, TransitionName{"SI", {}},
@@ -43,7 +43,8 @@ fieldbus::Transitions readTransitions(XmlElement element, const EsiValues& value
     fieldbus::Transitions transitions;
     const auto elements = element.children("Transition");
     if (elements.empty()) {
-        values.error(element.line(), "the command has no <Transition>", "IP, PS, SO, OS, SP, PI, …");
+        values.error(element.line(), "the command has no <Transition>",
+                     "IP, PS, SO, OS, SP, PI, …");
     }
     for (const XmlElement transition : elements) {
         const std::string text = transition.text();
@@ -84,15 +85,16 @@ void readValidation(XmlElement element, ListedCommand& command, const EsiValues&
     }
     fieldbus::ListedValidation validation;
     validation.data = *data;
-    validation.mask =
-        readHex(validate, "DataMask", values).value_or(std::vector<std::uint8_t>(data->size(), 0xFF));
+    validation.mask = readHex(validate, "DataMask", values)
+                          .value_or(std::vector<std::uint8_t>(data->size(), 0xFF));
     validation.timeout = values.milliseconds(validate, "Timeout", core::Duration{0});
     if (validation.mask.size() != data->size() || data->size() > command.data.size()) {
-        values.error(validate.line(),
-                     fmt::format("<Validate>: {} bytes of data, {} of mask and {} of the command do "
-                                 "not fit together",
-                                 data->size(), validation.mask.size(), command.data.size()),
-                     "data and mask of one length, not longer than the command's data");
+        values.error(
+            validate.line(),
+            fmt::format("<Validate>: {} bytes of data, {} of mask and {} of the command do "
+                        "not fit together",
+                        data->size(), validation.mask.size(), command.data.size()),
+            "data and mask of one length, not longer than the command's data");
         return;
     }
     for (std::size_t i = 0; i < data->size(); ++i) {
@@ -139,8 +141,8 @@ ListedCommand readInitCommand(XmlElement element, const EsiValues& values) {
     }
     command.command = static_cast<std::uint8_t>(*number);
     readAddress(element, command, values);
-    const auto length = readNumber(element, "DataLength", static_cast<std::int64_t>(LongestData),
-                                   values);
+    const auto length =
+        readNumber(element, "DataLength", static_cast<std::int64_t>(LongestData), values);
     if (auto data = readHex(element, "Data", values)) {
         command.data = std::move(*data);
     } else if (length) {
@@ -176,8 +178,8 @@ bool isDownload(XmlElement element, const EsiValues& values) {
 
 }  // namespace
 
-std::optional<std::int64_t> readNumber(XmlElement element, std::string_view name,
-                                       std::int64_t most, const EsiValues& values) {
+std::optional<std::int64_t> readNumber(XmlElement element, std::string_view name, std::int64_t most,
+                                       const EsiValues& values) {
     const XmlElement found = element.child(name);
     if (!found.present()) return std::nullopt;
     return values.number(found.text(), found.line(), fmt::format("<{}>", name), 0, most);
@@ -206,8 +208,8 @@ int lineOf(const std::string& origin) {
 std::optional<std::vector<std::uint8_t>> writtenAt(const ListedCommand& command,
                                                    std::uint16_t address, std::size_t size) {
     const auto number = static_cast<Command>(command.command);
-    const bool writes = number == Command::Apwr || number == Command::Fpwr ||
-                        number == Command::Bwr;
+    const bool writes =
+        number == Command::Apwr || number == Command::Fpwr || number == Command::Bwr;
     const std::size_t at = std::size_t{address} - command.ado;
     if (!writes || address < command.ado || at + size > command.data.size()) return std::nullopt;
     const auto first = command.data.begin() + static_cast<std::ptrdiff_t>(at);

@@ -88,19 +88,20 @@ CyclicCommand readCommand(XmlElement element, const MailboxStateArea& mailboxSta
                           const EniNetwork& network, const EsiValues& values) {
     CyclicCommand command;
     readStates(element, command, values);
-    const auto number = readNumber(element, "Cmd", static_cast<std::int64_t>(Command::Frmw), values);
+    const auto number =
+        readNumber(element, "Cmd", static_cast<std::int64_t>(Command::Frmw), values);
     if (!number) values.error(element.line(), "the cyclic command has no <Cmd>", "0 to 14");
     command.command = static_cast<std::uint8_t>(number.value_or(0));
     if (isLogical(static_cast<Command>(command.command))) {
-        command.address = static_cast<std::uint32_t>(
-            readNumber(element, "Addr", Most32, values).value_or(0));
+        command.address =
+            static_cast<std::uint32_t>(readNumber(element, "Addr", Most32, values).value_or(0));
     } else {
         const auto adp = readNumber(element, "Adp", Most16, values).value_or(0);
         const auto ado = readNumber(element, "Ado", Most16, values).value_or(0);
         command.address = static_cast<std::uint32_t>(adp) | static_cast<std::uint32_t>(ado) << 16U;
     }
-    const std::size_t told = hexBytes(element.child("Data").text()).value_or(
-        std::vector<std::uint8_t>{}).size();
+    const std::size_t told =
+        hexBytes(element.child("Data").text()).value_or(std::vector<std::uint8_t>{}).size();
     command.length = static_cast<std::uint16_t>(values.child(
         element, "DataLength", 1, wire::MaxDatagramData, static_cast<std::int64_t>(told)));
     command.kind = kindOf(command, mailboxStates);
@@ -115,8 +116,7 @@ CyclicCommand readCommand(XmlElement element, const MailboxStateArea& mailboxSta
                          "the working counter that is expected");
         }
         readOffsets(element, command, network, values);
-    } else if (command.kind == Kind::Other &&
-               !isHarmless(static_cast<Command>(command.command))) {
+    } else if (command.kind == Kind::Other && !isHarmless(static_cast<Command>(command.command))) {
         values.error(element.line(),
                      fmt::format("the cyclic command {} writes registers, which is not supported",
                                  command.command),
@@ -158,10 +158,10 @@ std::vector<EniVariable> readVariables(XmlElement image, std::uint32_t& bytes,
         variable.firstBit =
             static_cast<std::uint32_t>(values.child(element, "BitOffs", 0, 8 * LargestImage, 0));
         if (variable.firstBit + variable.bits > std::uint64_t{8} * bytes || variable.bits == 0) {
-            values.error(element.line(),
-                         fmt::format("the variable '{}' is outside the process image",
-                                     variable.name),
-                         fmt::format("bits 0 to {}", 8 * std::uint64_t{bytes}));
+            values.error(
+                element.line(),
+                fmt::format("the variable '{}' is outside the process image", variable.name),
+                fmt::format("bits 0 to {}", 8 * std::uint64_t{bytes}));
         }
         variables.push_back(std::move(variable));
     }
@@ -191,17 +191,15 @@ std::vector<Mapping> mappingsOf(const EniSlave& slave) {
         const bool up = command.transitions.has(fieldbus::Transition::InitToPreOp) ||
                         command.transitions.has(fieldbus::Transition::PreOpToSafeOp);
         for (std::size_t n = 0; up && n < most; ++n) {
-            const auto at =
-                static_cast<std::uint16_t>(wire::reg::Fmmu + n * wire::reg::FmmuSize);
+            const auto at = static_cast<std::uint16_t>(wire::reg::Fmmu + n * wire::reg::FmmuSize);
             const auto data = writtenAt(command, at, wire::reg::FmmuSize);
             // The state of a mailbox lies in the SyncManager registers and is no process data.
             if (!data || ((*data)[12] & 1U) == 0 || isSyncManagerStatus(word(*data, 8))) continue;
             const std::uint64_t start = word(*data, 0) | std::uint64_t{word(*data, 2)} << 16U;
             const std::uint64_t last = start + word(*data, 4) - 1;
-            mappings.push_back({8 * start + (*data)[6],
-                                8 * (last - start) + (*data)[7] + 1U - (*data)[6],
-                                ((*data)[11] & 1U) != 0, ((*data)[11] & 2U) != 0,
-                                lineOf(command.origin)});
+            mappings.push_back(
+                {8 * start + (*data)[6], 8 * (last - start) + (*data)[7] + 1U - (*data)[6],
+                 ((*data)[11] & 1U) != 0, ((*data)[11] & 2U) != 0, lineOf(command.origin)});
         }
     }
     return mappings;

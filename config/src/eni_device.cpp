@@ -156,7 +156,7 @@ void takeFmmus(EniSlave& slave) {
             if (!data || ((*data)[12] & 1U) == 0) continue;
             if (fmmus.size() <= n) fmmus.resize(n + 1, wire::FmmuUse::Unused);
             const bool status = isSyncManagerStatus(wire::load16(*data, 8));
-            fmmus[n] = status                           ? wire::FmmuUse::MailboxState
+            fmmus[n] = status                          ? wire::FmmuUse::MailboxState
                        : ((*data)[11] & readType) != 0 ? wire::FmmuUse::Inputs
                                                        : wire::FmmuUse::Outputs;
         }
@@ -237,8 +237,8 @@ void addMapped(Entries& entries, const std::vector<wire::PdoDescription>& pdos,
     }
 }
 
-void addWritable(Entries& entries, std::uint16_t index, std::uint8_t subindex,
-                 wire::DataType type, std::uint16_t bits) {
+void addWritable(Entries& entries, std::uint16_t index, std::uint8_t subindex, wire::DataType type,
+                 std::uint16_t bits) {
     auto& object = entries[index];
     const auto [place, fresh] = object.try_emplace(subindex);
     wire::ObjectEntryDescription& entry = place->second;
@@ -317,7 +317,9 @@ void readDc(XmlElement element, EniSlave& slave, const EsiValues& values) {
     slave.dc.sync0Cycle = core::Duration{told};
     slave.dc.sync0Shift = core::Duration{values.child(dc, "ShiftTime", -second, second, 0)};
     if (slave.dc.enabled && (!cycle || cycle->first != told || told == 0)) {
-        values.error(cycle ? cycle->second : dc.present() ? dc.line() : element.line(),
+        values.error(cycle          ? cycle->second
+                     : dc.present() ? dc.line()
+                                    : element.line(),
                      fmt::format("slave '{}': SYNC0 is switched on with a cycle of {} ns, but "
                                  "<DC>/<CycleTime0> is {} ns",
                                  slave.name, cycle ? cycle->first : 0, told),

@@ -48,10 +48,10 @@ void checkAddressee(const ListedCommand& command, const EniSlave& slave, std::si
                     const EsiValues& values) {
     const auto ownPosition = static_cast<std::uint16_t>(0U - position);
     const auto wrong = [&](std::uint16_t right) {
-        values.error(lineOf(command.origin),
-                     fmt::format("slave '{}': the command goes to <Adp> {}", slave.name,
-                                 command.adp),
-                     fmt::format("{}", right));
+        values.error(
+            lineOf(command.origin),
+            fmt::format("slave '{}': the command goes to <Adp> {}", slave.name, command.adp),
+            fmt::format("{}", right));
     };
     switch (static_cast<Command>(command.command)) {
         case Command::Aprd:
@@ -112,15 +112,15 @@ void checkWayUp(const EniSlave& slave, const EsiValues& values) {
         const char* name;
         std::uint8_t state;
     };
-    for (const Step& step : {Step{Transition::InitToPreOp, "IP", 2},
-                             Step{Transition::PreOpToSafeOp, "PS", 4},
-                             Step{Transition::SafeOpToOp, "SO", 8}}) {
-        const bool asked = std::any_of(
-            slave.listed.commands.begin(), slave.listed.commands.end(), [&](const auto& command) {
-                const auto data = writtenAt(command, reg::AlControl, 1);
-                return command.transitions.has(step.transition) && data &&
-                       ((*data)[0] & 0x0FU) == step.state;
-            });
+    for (const Step& step :
+         {Step{Transition::InitToPreOp, "IP", 2}, Step{Transition::PreOpToSafeOp, "PS", 4},
+          Step{Transition::SafeOpToOp, "SO", 8}}) {
+        const bool asked = std::any_of(slave.listed.commands.begin(), slave.listed.commands.end(),
+                                       [&](const auto& command) {
+                                           const auto data = writtenAt(command, reg::AlControl, 1);
+                                           return command.transitions.has(step.transition) &&
+                                                  data && ((*data)[0] & 0x0FU) == step.state;
+                                       });
         if (asked) continue;
         values.error(slave.place.line,
                      fmt::format("slave '{}': no init command of {} asks for its state", slave.name,
@@ -225,10 +225,10 @@ void checkClock(const EniNetwork& network, int line, const EsiValues& values) {
             }));
     }
     if (found > 1 || (wanted && found == 0)) {
-        values.error(line,
-                     fmt::format("{} cyclic commands hand the time of the reference clock round",
-                                 found),
-                     "one ARMW or FRMW at register 0x0910");
+        values.error(
+            line,
+            fmt::format("{} cyclic commands hand the time of the reference clock round", found),
+            "one ARMW or FRMW at register 0x0910");
     }
 }
 

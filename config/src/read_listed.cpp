@@ -41,8 +41,8 @@ void checkWatchdog(const SlavePart& slave, const fieldbus::NetworkParams& networ
 }
 
 SlavePart makePart(const EniSlave& listed, NetworkPart& network, fieldbus::RevisionRule rule) {
-    SlavePart slave{{listed.place, fmt::format("slave '{}'", listed.name),
-                     network.reader.diagnostics()}};
+    SlavePart slave{
+        {listed.place, fmt::format("slave '{}'", listed.name), network.reader.diagnostics()}};
     const auto known = findDevice(listed.device.identity, network.catalogue);
     fieldbus::SlaveParams& params = slave.params;
     params.name = listed.name;
@@ -106,13 +106,12 @@ core::PdoSlot bindOne(const ElementReader& reader, const BindName& bind, const s
                      [&wanted](const EniVariable& variable) { return variable.name == wanted; });
     if (found == variables.end()) {
         const std::string nearest = nearestName(wanted, names);
-        reader.error(bind.name,
-                     fmt::format("the {} of the process image have no variable '{}'{}",
-                                 bind.output ? "outputs" : "inputs", wanted,
-                                 nearest.empty()
-                                     ? ""
-                                     : fmt::format(", did you mean '{}'?", nearest)),
-                     joined(names));
+        reader.error(
+            bind.name,
+            fmt::format("the {} of the process image have no variable '{}'{}",
+                        bind.output ? "outputs" : "inputs", wanted,
+                        nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest)),
+            joined(names));
         return {};
     }
     if (!lies(*found, share)) {
@@ -123,8 +122,7 @@ core::PdoSlot bindOne(const ElementReader& reader, const BindName& bind, const s
         return {};
     }
     if (found->bits != bind.bits) {
-        reader.error(bind.name,
-                     fmt::format("the variable '{}' has {} bits", wanted, found->bits),
+        reader.error(bind.name, fmt::format("the variable '{}' has {} bits", wanted, found->bits),
                      fmt::format("{} bits", bind.bits));
         return {};
     }

@@ -16,8 +16,8 @@ constexpr std::array<double, AxisCount> Velocities{600.0, 500.0, 200.0, 900.0};
 
 /// Where the axes stand together, in mm and deg.
 using Station = std::array<double, AxisCount>;
-constexpr std::array<Station, 3> Stations{
-    Station{300.0, 200.0, 80.0, 90.0}, Station{550.0, 350.0, 20.0, 270.0}, Station{}};
+constexpr std::array<Station, 3> Stations{Station{300.0, 200.0, 80.0, 90.0},
+                                          Station{550.0, 350.0, 20.0, 270.0}, Station{}};
 
 class Line : public takt::Program {
 public:

@@ -80,8 +80,7 @@ TEST_F(NewProject, TakesTheDevicesOfANetworkFile) {
     const std::string eni = std::string{TAKT_SOURCE_DIR} + "/samples/06_eni/line.eni.xml";
     const auto made = make("plant", {"--eni", eni});
     ASSERT_EQ(made.exitCode, 0) << made.output;
-    EXPECT_THAT(made.output,
-                HasSubstr("X (CD300E), Y (CD300E), Z (RA), A (Servo402)"));
+    EXPECT_THAT(made.output, HasSubstr("X (CD300E), Y (CD300E), Z (RA), A (Servo402)"));
     const std::string machine = readFile(path("plant/machine.xml"));
     EXPECT_THAT(machine, HasSubstr("<Network eni=\"line.eni.xml\">"));
     EXPECT_THAT(machine, HasSubstr("<Drive slave=\"Drive 1 (CD300E)\""));
@@ -93,8 +92,7 @@ TEST_F(NewProject, TakesTheDevicesOfANetworkFile) {
 }
 
 TEST_F(NewProject, SaysInWhichLineANetworkFileIsWrong) {
-    std::string eni =
-        readFile(std::string{TAKT_SOURCE_DIR} + "/samples/06_eni/line.eni.xml");
+    std::string eni = readFile(std::string{TAKT_SOURCE_DIR} + "/samples/06_eni/line.eni.xml");
     const std::string counter = "<Cnt>12</Cnt>";
     ASSERT_NE(eni.find(counter), std::string::npos);
     eni.replace(eni.find(counter), counter.size(), "<Cnt>11</Cnt>");

@@ -169,8 +169,8 @@ INSTANTIATE_TEST_SUITE_P(
                "no station address", -2},
         BadEni{"StationOfAnother", "<PhysAddr>1002</PhysAddr>", "<PhysAddr>1001</PhysAddr>",
                "station address 1001 of 'Drive 1", -2},
-        BadEni{"WrongOrder", "<AutoIncAddr>65535</AutoIncAddr>",
-               "<AutoIncAddr>65534</AutoIncAddr>", "slaves in frame order"},
+        BadEni{"WrongOrder", "<AutoIncAddr>65535</AutoIncAddr>", "<AutoIncAddr>65534</AutoIncAddr>",
+               "slaves in frame order"},
         BadEni{"NoVendor", "<VendorId>4294905043</VendorId>", "", "no <VendorId>", -3},
         BadEni{"IdentityAgainstItsCheck", "<ProductCode>12779744</ProductCode>",
                "<ProductCode>12779745</ProductCode>", "wants 0x00c300e0", -3},
@@ -280,8 +280,7 @@ TEST_F(EniMachine, WritesTheObjectsOfAnAxisBehindTheListedOnes) {
 }
 
 TEST_F(EniMachine, NamesTheVariablesThatThereAre) {
-    const LoadResult result =
-        loadWith("RxPDO 1.Controlword\"", "RxPDO 1.Control word\"");
+    const LoadResult result = loadWith("RxPDO 1.Controlword\"", "RxPDO 1.Control word\"");
     EXPECT_FALSE(result.machine);
     const std::string told = format(result.diagnostics);
     EXPECT_THAT(told, HasSubstr(changedLine()));
@@ -290,23 +289,22 @@ TEST_F(EniMachine, NamesTheVariablesThatThereAre) {
 }
 
 TEST_F(EniMachine, RefusesAVariableOfAnotherSlave) {
-    const LoadResult result = loadWith("controlword=\"Drive 4 (Servo402).RxPDO",
-                                       "controlword=\"Drive 1 (CD300E).RxPDO");
+    const LoadResult result =
+        loadWith("controlword=\"Drive 4 (Servo402).RxPDO", "controlword=\"Drive 1 (CD300E).RxPDO");
     EXPECT_FALSE(result.machine);
     EXPECT_THAT(format(result.diagnostics), HasSubstr(changedLine()));
     EXPECT_THAT(format(result.diagnostics), HasSubstr("does not belong to the slave"));
 }
 
 TEST_F(EniMachine, RefusesAVariableOfTheWrongSize) {
-    const LoadResult result =
-        loadWith("RxPDO 1.Target position\"", "RxPDO 1.Controlword\"");
+    const LoadResult result = loadWith("RxPDO 1.Target position\"", "RxPDO 1.Controlword\"");
     EXPECT_FALSE(result.machine);
     EXPECT_THAT(format(result.diagnostics), HasSubstr("has 16 bits; allowed: 32 bits"));
 }
 
 TEST_F(EniMachine, RefusesSlavesBesideTheNetworkFile) {
-    const LoadResult result = loadWith(
-        "  </Network>", "<Slave name=\"x\" device=\"CD300E\"/></Network>");
+    const LoadResult result =
+        loadWith("  </Network>", "<Slave name=\"x\" device=\"CD300E\"/></Network>");
     EXPECT_FALSE(result.machine);
     EXPECT_THAT(format(result.diagnostics), HasSubstr(changedLine()));
 }

@@ -73,9 +73,8 @@ inline fieldbus::ListedSlave listedSlave(std::size_t number, std::size_t count) 
     slave.outputs = {8 * (ImageStart + outputAt), 8U * OutputBytes};
     slave.inputs = {8 * (ImageStart + inputAt), 8U * InputBytes};
     auto& list = slave.commands;
-    ListedCommand address =
-        write(Transition::InitToPreOp, static_cast<std::uint16_t>(0U - number), 0x0010, {0, 0},
-              "station address");
+    ListedCommand address = write(Transition::InitToPreOp, static_cast<std::uint16_t>(0U - number),
+                                  0x0010, {0, 0}, "station address");
     address.command = 2;  // APWR
     wire::store16(address.data, 0, own);
     list.push_back(address);
@@ -90,8 +89,7 @@ inline fieldbus::ListedSlave listedSlave(std::size_t number, std::size_t count) 
     list.push_back(write(PreOpToSafeOp, own, 0x0980, {0x00, 0x03}, "SYNC0 on"));
     list.push_back(
         write(PreOpToSafeOp, own, 0x0810, syncManager(0x1100, OutputBytes, 0x64), "SM2"));
-    list.push_back(
-        write(PreOpToSafeOp, own, 0x0818, syncManager(0x1400, InputBytes, 0x20), "SM3"));
+    list.push_back(write(PreOpToSafeOp, own, 0x0818, syncManager(0x1400, InputBytes, 0x20), "SM3"));
     list.push_back(write(PreOpToSafeOp, own, 0x0600,
                          fmmu(ListedLogical + outputAt, OutputBytes, 0x1100, 2), "FMMU0"));
     list.push_back(write(PreOpToSafeOp, own, 0x0610,

@@ -140,9 +140,8 @@ TEST_F(ListedNetwork, RefusesADeviceOfAnotherIdentityWithTheLineOfTheList) {
     const auto told = problems();
     ASSERT_EQ(told.size(), 1U);
     EXPECT_EQ(told[0].origin, "list.xml:77");
-    EXPECT_THAT(told[0].text,
-                AllOf(HasSubstr("expected product 0x00000099, found 0x00000042"),
-                      HasSubstr("check the network file")));
+    EXPECT_THAT(told[0].text, AllOf(HasSubstr("expected product 0x00000099, found 0x00000042"),
+                                    HasSubstr("check the network file")));
 }
 
 TEST_F(ListedNetwork, StopsAtAWorkingCounterThatIsNotTheListed) {
@@ -173,8 +172,7 @@ TEST_F(ListedNetwork, StopsAtAValidationThatDoesNotComeTrue) {
 
 TEST_F(ListedNetwork, TellsWhyADeviceRefusesAState) {
     TwinMachine& machine = start([](auto& network) {
-        auto& command =
-            find(network.slaves[1], "SM2", fieldbus::Transition::PreOpToSafeOp);
+        auto& command = find(network.slaves[1], "SM2", fieldbus::Transition::PreOpToSafeOp);
         command.data = test::syncManager(0x1100, 6, 0x64);
     });
     ASSERT_THAT(machine.bringUp(), IsEmpty());
@@ -225,6 +223,47 @@ TEST_F(ListedNetwork, NamesAListedObjectThatIsRefused) {
     const auto told = problems();
     ASSERT_EQ(told.size(), 1U);
     EXPECT_THAT(told[0].text, HasSubstr("refuses object 5FFFh:00 (list.xml:12)"));
+}
+
+/// RxPDO 1600h as a whole: mode, controlword, target, in another order than the device's own.
+fieldbus::ListedObject wholeMapping() {
+    fieldbus::ListedObject object;
+    object.transitions.add(fieldbus::Transition::PreOpToSafeOp);
+    object.index = 0x1600;
+    object.completeAccess = true;
+    object.data = {3, 0, 0x08, 0, 0x60, 0x60, 0x10, 0, 0x40, 0x60, 0x20, 0, 0x7A, 0x60};
+    return object;
+}
+
+TEST_F(ListedNetwork, WritesAnObjectAsAWhole) {
+    auto devices = TwinMachine::networkOf(drives(1), milliseconds{1});
+    auto device = std::make_shared<wire::DeviceDescription>(*devices.slaves[0].device);
+    device->mailbox->completeAccess = true;
+    devices.slaves[0].device = device;
+    test::makeListed(devices);
+    devices.slaves[0].listed->objects.push_back(wholeMapping());
+    devices.slaves[0].outputs[0].entries = {{0x6060, 0, 8}, {0x6040, 0, 16}, {0x607A, 0, 32}};
+    twin::Twin segment{drives(1), {device}, milliseconds{1}};
+    fieldbus::ethercat::Master master{devices, segment.link(), segment.clock()};
+    ASSERT_TRUE(master.bringUp({}).empty());
+    auto& objects = master.objects(0);
+    ASSERT_TRUE(objects.startRead({0x1600, 2}));
+    for (std::uint64_t k = 0; objects.reply().state == ObjectState::Pending && k < 100; ++k) {
+        segment.clock().sleepUntil(segment.clock().now() + milliseconds{1});
+        master.exchange(k);
+        master.prepare();
+    }
+    ASSERT_EQ(objects.reply().state, ObjectState::Done);
+    const core::ObjectValue value = objects.reply().value;
+    EXPECT_EQ(wire::load32(value.bytes, 0), 0x60400010U);
+}
+
+TEST_F(ListedNetwork, TakesARefusedCompleteAccessForAnAnswer) {
+    start([](auto& network) { network.slaves[0].listed->objects.push_back(wholeMapping()); });
+    const auto told = problems();
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_THAT(told[0].text, HasSubstr("refuses object 1600h:00"));
+    EXPECT_THAT(told[0].text, HasSubstr("abort 0x06010004"));
 }
 
 TEST_F(ListedNetwork, SaysSoWhenTheListTakesTheTimeFromAnotherDevice) {

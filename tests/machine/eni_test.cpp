@@ -85,9 +85,10 @@ TEST(EniRun, RefusesADeviceThatIsNotTheOneOfTheFile) {
     writeFile(folder + "/machine.xml", machine);
     const auto run = runTakt({"run", "machine.xml", "--fast"}, folder);
     EXPECT_EQ(run.exitCode, 2) << "could not run: another device stands there";
-    EXPECT_THAT(run.output, AllOf(HasSubstr("line.eni.xml:103: slave 0 'Drive 1 (CD300E)': expected "
-                                            "product 0x00c300e1, found 0x00c300e0"),
-                                  HasSubstr("check the network file")));
+    EXPECT_THAT(run.output,
+                AllOf(HasSubstr("line.eni.xml:103: slave 0 'Drive 1 (CD300E)': expected "
+                                "product 0x00c300e1, found 0x00c300e0"),
+                      HasSubstr("check the network file")));
 }
 
 }  // namespace

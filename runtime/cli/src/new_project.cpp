@@ -209,7 +209,8 @@ std::string networkAttributes(const Project& project) {
 }
 
 std::string machineFile(const Project& project) {
-    std::string text = fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
+    std::string text = fmt::format(
+        R"(<?xml version="1.0" encoding="UTF-8"?>
 <!-- Every number carries its unit. `takt check machine.xml` says what is wrong with it, and where. -->
 <Machine name="{0}"
          xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
@@ -219,12 +220,10 @@ std::string machineFile(const Project& project) {
   <Network {3}>
 {1}{2}  </Network>
 )",
-                                   project.name, esiElements(project), slaveElements(project),
-                                   networkAttributes(project),
-                                   project.eni.empty()
-                                       ? "The devices in the order in which frames pass them."
-                                       : "Devices, cycle and process image are those of the network "
-                                         "file.");
+        project.name, esiElements(project), slaveElements(project), networkAttributes(project),
+        project.eni.empty() ? "The devices in the order in which frames pass them."
+                            : "Devices, cycle and process image are those of the network "
+                              "file.");
     text +=
         "\n  <!-- perTurn: travel of the load for one turn of the motor. Put your mechanics and "
         "limits here. -->";

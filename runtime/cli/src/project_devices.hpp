@@ -27,8 +27,8 @@ struct ProjectDevice {
 [[nodiscard]] std::vector<ProjectDevice> findDevices(
     const std::vector<std::filesystem::path>& files, const std::vector<wire::Identity>& found);
 
-/// The slaves of a network file (ENI), in frame order; `files`: device files that may describe them.
-/// \throw std::runtime_error one line: the first thing that is wrong with the network file
+/// The slaves of a network file (ENI), in frame order; `files`: device files that may describe
+/// them. \throw std::runtime_error one line: the first thing that is wrong with the network file
 [[nodiscard]] std::vector<ProjectDevice> devicesOfNetwork(
     const std::filesystem::path& eni, const std::vector<std::filesystem::path>& files);
 

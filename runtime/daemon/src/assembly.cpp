@@ -73,9 +73,8 @@ axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave,
                                const axis::DriveBindings& bound) {
     using namespace core::cia402;  // NOLINT(google-build-using-namespace): a list of its names
     const auto output = [&slave](core::PdoSlot told, std::uint16_t index) {
-        return told.present()
-                   ? told
-                   : fieldbus::findEntry(slave, fieldbus::Direction::Outputs, index, 0);
+        return told.present() ? told
+                              : fieldbus::findEntry(slave, fieldbus::Direction::Outputs, index, 0);
     };
     const auto input = [&slave](core::PdoSlot told, std::uint16_t index) {
         return told.present() ? told
@@ -97,7 +96,8 @@ void attachAxes(const config::MachineConfig& machine, fieldbus::ethercat::Master
                 Axes& axes) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
         const std::size_t slave = slaveIndex(machine.network, machine.axes[i].drive.slave);
-        axes[i].attach(master.image(slave), bindingsOf(machine.network.slaves[slave], machine.axes[i].drive.bound),
+        axes[i].attach(master.image(slave),
+                       bindingsOf(machine.network.slaves[slave], machine.axes[i].drive.bound),
                        &master.objects(slave));
     }
 }

@@ -2,7 +2,6 @@
 
 #include <span>
 
-
 namespace takt::daemon {
 
 namespace {

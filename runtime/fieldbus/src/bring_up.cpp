@@ -75,17 +75,17 @@ void BringUp::blame(std::size_t slave, std::string_view text, const std::string&
 
 std::vector<BringUpProblem> BringUp::run() {
     using Stage = void (BringUp::*)();
-    constexpr std::array<Stage, 10> worked{
-        &BringUp::checkParams, &BringUp::countDevices,   &BringUp::resetDevices,
-        &BringUp::scan,        &BringUp::compareDevices, &BringUp::measureClocks,
-        &BringUp::configure,   &BringUp::writeObjects,   &BringUp::settleClocks,
-        &BringUp::armSync};
+    constexpr std::array<Stage, 10> worked{&BringUp::checkParams,    &BringUp::countDevices,
+                                           &BringUp::resetDevices,   &BringUp::scan,
+                                           &BringUp::compareDevices, &BringUp::measureClocks,
+                                           &BringUp::configure,      &BringUp::writeObjects,
+                                           &BringUp::settleClocks,   &BringUp::armSync};
     // A list clears the clocks of all devices on the way to PREOP, so they are measured behind it.
-    constexpr std::array<Stage, 10> listed{
-        &BringUp::checkParams,  &BringUp::countDevices,   &BringUp::resetDevices,
-        &BringUp::scan,         &BringUp::compareDevices, &BringUp::configure,
-        &BringUp::measureClocks, &BringUp::writeObjects,  &BringUp::settleClocks,
-        &BringUp::armSync};
+    constexpr std::array<Stage, 10> listed{&BringUp::checkParams,    &BringUp::countDevices,
+                                           &BringUp::resetDevices,   &BringUp::scan,
+                                           &BringUp::compareDevices, &BringUp::configure,
+                                           &BringUp::measureClocks,  &BringUp::writeObjects,
+                                           &BringUp::settleClocks,   &BringUp::armSync};
     for (const Stage stage : parts_.network.listed ? listed : worked) {
         (this->*stage)();
         if (!problems_.empty()) break;
@@ -124,9 +124,8 @@ void BringUp::checkSlave(std::size_t i) {
     for (const StartupObject& object : slave.startup) {
         if (!object.data.empty() && object.data.size() <= sizeof(core::ObjectValue::bytes))
             continue;
-        blame(i,
-              fmt::format("start-up object {:04X}h:{:02X} ({}) has {} bytes, allowed are 1 to 8",
-                          object.index, object.subindex, object.origin, object.data.size()));
+        blame(i, fmt::format("start-up object {:04X}h:{:02X} ({}) has {} bytes, allowed are 1 to 8",
+                             object.index, object.subindex, object.origin, object.data.size()));
     }
     if (slave.watchdog.count() <= 0) {
         blame(i,
@@ -258,8 +257,8 @@ void BringUp::measureClocks() {
         ports[i].openPorts = found_[i].openPorts();
         ports[i].dc = found_[i].has(reg::FeatureDc);
         if (!ports[i].dc) continue;
-        const Reply reply =
-            talk_.ask(readRequest(stationOf(parts_.network, i), reg::DcReceiveTimePort0, readBytes));
+        const Reply reply = talk_.ask(
+            readRequest(stationOf(parts_.network, i), reg::DcReceiveTimePort0, readBytes));
         if (!reply.served()) {
             blame(i, "its receive times cannot be read");
             return;
@@ -425,10 +424,9 @@ void BringUp::runCommon(const Script& script) {
     talk_.run(parts_.slice, parts_.machines);
     const Step* const step = parts_.everyone.failedStep();
     if (step == nullptr) return;
-    problems_.push_back(
-        {{},
-         fmt::format("network: {}", describe(parts_.everyone.failure(), *step)),
-         std::get<CommandStep>(*step).command.origin});
+    problems_.push_back({{},
+                         fmt::format("network: {}", describe(parts_.everyone.failure(), *step)),
+                         std::get<CommandStep>(*step).command.origin});
 }
 
 }  // namespace takt::fieldbus::ethercat

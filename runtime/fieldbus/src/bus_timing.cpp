@@ -85,8 +85,7 @@ std::size_t acyclicSliceBytes(const NetworkParams& network) noexcept {
 }
 
 BusTiming computeTiming(const NetworkParams& network) {
-    const ethercat::CyclePlan plan =
-        ethercat::makePlan(network, ethercat::makeLayout(network));
+    const ethercat::CyclePlan plan = ethercat::makePlan(network, ethercat::makeLayout(network));
     BusTiming timing;
     timing.acyclicBytes = acyclicSliceBytes(network);
     const Load load = countFrames(plan, timing.acyclicBytes);

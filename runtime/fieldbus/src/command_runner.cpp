@@ -67,8 +67,7 @@ bool writes(const ListedCommand& command) noexcept {
 
 bool readsAt(const ListedCommand& command, std::uint16_t address) noexcept {
     const auto number = static_cast<Command>(command.command);
-    const bool reads =
-        number == Command::Aprd || number == Command::Fprd || number == Command::Brd;
+    const bool reads = number == Command::Aprd || number == Command::Fprd || number == Command::Brd;
     return reads && command.ado == address;
 }
 

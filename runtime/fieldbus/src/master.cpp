@@ -78,8 +78,8 @@ Master::Parts::Parts(const NetworkParams& params, wire::Link& wireLink,
       reference{network.cycle, timing.sync0AfterSend},
       walk{network, agents, scripts, everyone, common, data} {
     for (std::size_t i = 0; i < network.slaves.size(); ++i) {
-        agents.push_back(
-            std::make_unique<SlaveAgent>(network.slaves[i], stationOf(network, i), slice.work(), i));
+        agents.push_back(std::make_unique<SlaveAgent>(network.slaves[i], stationOf(network, i),
+                                                      slice.work(), i));
         machines.push_back(agents.back().get());
         scripts.push_back(makeScripts(network, i, layout));
         const auto number = static_cast<std::uint16_t>(i);

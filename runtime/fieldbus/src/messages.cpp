@@ -12,8 +12,8 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-void compareNumber(Lines& lines, const SlaveParams& slave, const char* what,
-                   std::uint32_t expected, std::uint32_t found) {
+void compareNumber(Lines& lines, const SlaveParams& slave, const char* what, std::uint32_t expected,
+                   std::uint32_t found) {
     if (expected == found) return;
     lines.push_back(fmt::format(
         "expected {} {:#010x}, found {:#010x}; check the {} file or the order of the devices", what,
@@ -79,9 +79,8 @@ std::string objectName(std::uint16_t index, std::uint8_t subindex) {
 
 /// "init command 'check vendor id'"
 std::string commandName(const ListedCommand& command) {
-    return command.comment.empty()
-               ? fmt::format("init command at register {:#06x}", command.ado)
-               : fmt::format("init command '{}'", command.comment);
+    return command.comment.empty() ? fmt::format("init command at register {:#06x}", command.ado)
+                                   : fmt::format("init command '{}'", command.comment);
 }
 
 std::string unanswered(const ListedCommand& command, std::int64_t counter) {
@@ -113,7 +112,7 @@ const ListedCommand* listedCommand(const NetworkParams& network, const NetworkPr
         commands = &network.listed->commands;
     }
     return commands != nullptr && problem.item < commands->size() ? &(*commands)[problem.item]
-                                                                   : nullptr;
+                                                                  : nullptr;
 }
 
 }  // namespace
@@ -193,15 +192,15 @@ std::string describe(const NetworkParams& network, const NetworkProblem& problem
             return fmt::format("{} refuses object {:04X}h with {}", who, problem.item,
                                abortWords(static_cast<std::uint32_t>(problem.number)));
         case NetworkProblem::Kind::CommandUnanswered:
-            return command == nullptr ? std::string{}
-                                      : fmt::format("{}: {} ({})", who,
-                                                    unanswered(*command, problem.number),
-                                                    command->origin);
+            return command == nullptr
+                       ? std::string{}
+                       : fmt::format("{}: {} ({})", who, unanswered(*command, problem.number),
+                                     command->origin);
         case NetworkProblem::Kind::CommandMismatch:
-            return command == nullptr ? std::string{}
-                                      : fmt::format("{}: {} ({})", who,
-                                                    mismatch(*command, problem.number),
-                                                    command->origin);
+            return command == nullptr
+                       ? std::string{}
+                       : fmt::format("{}: {} ({})", who, mismatch(*command, problem.number),
+                                     command->origin);
         case NetworkProblem::Kind::None:
             return {};
         case NetworkProblem::Kind::StateRefused:

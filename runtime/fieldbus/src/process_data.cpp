@@ -49,8 +49,8 @@ void ProcessData::forgetDatagrams() noexcept {
 
 void ProcessData::append(FrameSet& frames, std::size_t datagram) noexcept {
     const PlannedDatagram& planned = plan_.datagrams[datagram];
-    places_[datagram] = {
-        frames.appendLogical(planned.command, planned.address, planned.length), true};
+    places_[datagram] = {frames.appendLogical(planned.command, planned.address, planned.length),
+                         true};
 }
 
 void ProcessData::fill(FrameSet& frames) noexcept {

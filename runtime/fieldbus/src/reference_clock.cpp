@@ -22,8 +22,8 @@ void ReferenceClock::lead(std::uint16_t station, bool wide,
                           const PlannedDatagram& datagram) noexcept {
     station_ = station;
     command_ = datagram.command;
-    address_ = command_ == wire::Command::Armw ? static_cast<std::uint16_t>(datagram.address)
-                                               : station;
+    address_ =
+        command_ == wire::Command::Armw ? static_cast<std::uint16_t>(datagram.address) : station;
     length_ = datagram.length;
     wide_ = wide && length_ >= WideBytes;
     sample_ = {};

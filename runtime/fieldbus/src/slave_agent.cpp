@@ -197,10 +197,9 @@ void SlaveAgent::take(core::HostTime now, const Reply& reply) noexcept {
 
 void SlaveAgent::startCommandStep(const CommandStep& step) noexcept {
     const ListedCommand& command = step.command;
-    const bool asksForPreOp = writes(command) && command.ado == reg::AlControl &&
-                              !command.data.empty() &&
-                              (command.data[0] & wire::AlStateMask) ==
-                                  static_cast<std::uint8_t>(wire::AlState::PreOp);
+    const bool asksForPreOp =
+        writes(command) && command.ado == reg::AlControl && !command.data.empty() &&
+        (command.data[0] & wire::AlStateMask) == static_cast<std::uint8_t>(wire::AlState::PreOp);
     if (asksForPreOp && al_.state <= wire::AlState::Init && coe_) coe_->client.reset();
     runner_.start(command);
     stepStarted_ = true;
@@ -243,8 +242,8 @@ void SlaveAgent::endCommandStep(const ListedCommand& command) noexcept {
             break;
         case CommandRunner::Result::StateRefused:
             failure.kind = ScriptFailure::Kind::StateRefused;
-            failure.target = static_cast<wire::AlState>(command.validation->data[0] &
-                                                        wire::AlStateMask);
+            failure.target =
+                static_cast<wire::AlState>(command.validation->data[0] & wire::AlStateMask);
             break;
     }
     failure.seen = al_;

@@ -111,10 +111,8 @@ void append(Script& script, Script&& more) {
 Script startupSteps(const SlaveParams& slave) {
     Script script;
     for (const StartupObject& object : slave.startup) {
-        script.emplace_back(ObjectStep{{object.index, object.subindex},
-                                       object.data,
-                                       object.required,
-                                       object.origin});
+        script.emplace_back(ObjectStep{
+            {object.index, object.subindex}, object.data, object.required, object.origin});
     }
     return script;
 }

@@ -76,7 +76,7 @@ struct NetworkParams {
     core::Duration sendJitter{std::chrono::microseconds{50}};
     std::uint32_t dcDriftFrames{10000};  ///< most static drift frames before SAFEOP
     core::Duration dcLimit{std::chrono::microseconds{1}};  ///< 0x092C of every device before OP
-    std::string interface;  ///< of the real network, empty = not told
+    std::string interface;                ///< of the real network, empty = not told
     std::optional<ListedNetwork> listed;  ///< then every slave is listed too
 };
 
