@@ -10,7 +10,8 @@ using core::Seconds;
 
 namespace {
 
-constexpr double kAsFast = 1.0 + 1e-9;
+/// A straight line is worth a millionth of the time.
+constexpr double kAsFast = 1.0 + 9e-7;
 
 std::optional<InputFault> checkTiming(const Timing& timing) noexcept {
     const auto refuse = [](double value, InputField field) -> std::optional<InputFault> {
@@ -95,7 +96,6 @@ std::optional<double> Trajectory::writeStraight(bool atAnyPrice, bool& straight)
     straight = line && detail::planLine(group, *line, leader);
     std::optional<double> other;
     if (!straight) return detail::writeTogether(group, false, next_);
-    // What is longer by no more than rounding is as fast.
     const double duration = leader.duration().count();
     if (!atAnyPrice && duration > detail::slowest(group) * kAsFast) {
         other = detail::writeTogether(group, false, next_);

@@ -18,7 +18,7 @@ enum class Synchronisation : std::uint8_t {
     None,             ///< each axis as fast as it can
     Time,             ///< all arrive together
     TimeIfNecessary,  ///< axes whose target is at rest arrive when they can, the others together
-    /// Together, and on a straight line where that takes no longer: ways, velocities and
+    /// Together, and on a straight line where that takes no longer (by 1e-6): ways, velocities and
     /// accelerations of all axes are multiples of one vector, which velocity targets can have too.
     Phase,
     Line,  ///< together, and on a straight line wherever there is one, even if it takes longer
