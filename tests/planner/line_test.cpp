@@ -145,6 +145,7 @@ TEST(StraightLine, IsTakenExactlyWhereItsOptimumIsNotSlower) {
 TEST(StraightLine, IsTakenThereAndBackToTheSamePlace) {
     const std::array<double, kAxes> share{1, -0.5, 0.25};
     std::vector<AxisRequest> requests;
+    requests.reserve(kAxes);
     Case scalar{state(0, 1, 0), rest(0), limits(2, 4, 40)};
     for (const double e : share) requests.push_back(along(scalar, e, 7, limits(2, 4, 40)));
     Trajectory trajectory{kAxes};
@@ -179,6 +180,7 @@ TEST(StraightLine, IsKeptWhenPlannedAgainOnTheWayWithOtherLimits) {
         const std::array<double, kAxes> share{1, random.uniform(-1, 1), random.uniform(-1, 1)};
         const Case scalar{state(0, 0, 0), rest(random.uniform(0.01, 500)), limits(1, 1, 1)};
         std::vector<AxisRequest> requests;
+        requests.reserve(kAxes);
         for (const double e : share) {
             requests.push_back(along(scalar, e, random.uniform(-1e3, 1e3),
                                      limits(random.uniform(50, 500), random.uniform(500, 5e3),
