@@ -49,6 +49,16 @@ TEST(Trajectory, IfNecessaryOnlyMovingTargetsAreSynchronised) {
     EXPECT_GE(trajectory[2].duration().count(), 12.0);
 }
 
+TEST(Trajectory, AxesThatNeedNotWaitTakeWholeCyclesToo) {
+    Trajectory trajectory{2};
+    Timing timing;
+    timing.synchronisation = Synchronisation::TimeIfNecessary;
+    timing.cycle = Seconds{0.1};
+    ASSERT_TRUE(trajectory.plan(twoAxes(), timing).ok());
+    const double cycles = trajectory[1].duration().count() / 0.1;  // of 3.17 s
+    EXPECT_NEAR(cycles, 32, 1e-9);
+}
+
 TEST(Trajectory, LeavesAnAxisThatIsNotEnabledWhereItIs) {
     auto requests = twoAxes();
     requests[0].enabled = false;
