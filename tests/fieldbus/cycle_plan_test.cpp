@@ -1,6 +1,7 @@
+#include "cycle_plan.hpp"
+
 #include <gtest/gtest.h>
 
-#include "cycle_plan.hpp"
 #include "example_network.hpp"
 #include "listed_network.hpp"
 

@@ -193,6 +193,26 @@ TEST_F(ListedNetwork, NamesTheCommandThatFailsInTheCycle) {
                       HasSubstr("list.xml:ask for a state")));
 }
 
+TEST_F(ListedNetwork, SendsCommandsToAllBeforeAndAfterThoseOfTheDevices) {
+    for (const bool before : {true, false}) {
+        TwinMachine& machine = start([before](auto& network) {
+            auto command =
+                test::write(fieldbus::Transition::SafeOpToOp, 0, 0x0130, {0, 0}, "look at all");
+            command.command = 7;  // BRD
+            command.workingCounter = 9;
+            command.beforeSlaves = before;
+            network.listed->commands.push_back(command);
+        });
+        ASSERT_THAT(machine.bringUp(), IsEmpty());
+        EXPECT_FALSE(machine.toOp());
+        EXPECT_THAT(machine.master().problem(),
+                    HasSubstr("network: the init command 'look at all' came back with working "
+                              "counter 2, expected 9"));
+        const auto state = before ? wire::AlState::SafeOp : wire::AlState::Op;
+        EXPECT_EQ(machine.twin().probe(1).alState, state);
+    }
+}
+
 TEST_F(ListedNetwork, WritesListedObjectsOnTheWayToSafeOp) {
     TwinMachine& machine = start([](auto& network) {
         fieldbus::ListedObject object;
