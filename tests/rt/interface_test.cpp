@@ -31,6 +31,40 @@ protected:
         EXPECT_THAT(result_.output, HasSubstr(what));
         EXPECT_THAT(result_.output, HasSubstr("run exit 2"));
     }
+    /// By `scan` and `slaves`, which look at a network before a machine runs on it.
+    void expectTheDeviceListed() {
+        const auto scanned = linesWith(result_.output, "scan:");
+        ASSERT_THAT(scanned, SizeIs(1)) << result_.output;
+        // 0xFFFF0CD3, 0x00C300E0, 0x00010002 of the device file.
+        EXPECT_THAT(scanned[0], HasSubstr(R"("pos":0,"name":"","type":"CD300E")"));
+        EXPECT_THAT(scanned[0],
+                    HasSubstr(R"("vendor":4294905043,"product":12779744,"revision":65538)"));
+        EXPECT_THAT(scanned[0], HasSubstr(R"("dc":true,"coe":true,"ports":"0")"));
+        const auto listed = linesWith(result_.output, "slaves:");
+        ASSERT_THAT(listed, SizeIs(3)) << result_.output;
+        EXPECT_THAT(listed[0], HasSubstr(R"("pos":0,"address":1001,"alias":0)"));
+        EXPECT_THAT(listed[0], HasSubstr(R"("state":"INIT","error":false,"alStatusCode":0)"));
+        EXPECT_THAT(listed[2], testing::ContainsRegex("0 +1001 +0 +- +PREOP +CD300E"));
+        for (const char* verb : {"scan exit", "states exit", "slaves exit"}) {
+            const auto exits = linesWith(result_.output, verb);
+            EXPECT_THAT(exits, testing::Each(HasSubstr("exit 0"))) << result_.output;
+        }
+    }
+    void expectBothMovesDone() {
+        EXPECT_THAT(result_.output, HasSubstr("run exit 0"));
+        EXPECT_THAT(result_.output, HasSubstr("network in OP"));
+        EXPECT_THAT(result_.output, HasSubstr("sim exit 0"));
+        // 12.5 mm of 20 mm in a turn; the drive holds a count of a 10000th of a turn.
+        const auto ends = linesWith(result_.output, "end: x:");
+        ASSERT_THAT(ends, SizeIs(1)) << result_.output;
+        EXPECT_THAT(ends[0], HasSubstr("x: INIT, drive Switch on disabled"));
+        const std::size_t at = ends[0].find("motor at ");
+        ASSERT_NE(at, std::string::npos);
+        EXPECT_NEAR(std::stod(ends[0].substr(at + 9)), 0.625, 0.01);
+        EXPECT_THAT(linesWith(result_.output, "sim:"),
+                    Not(testing::Contains(HasSubstr("with error"))));
+        expectSmoothTrace();
+    }
     void expectSmoothTrace() {
         const auto judged = runCommand({"python3", Source + "/tests/machine/continuity.py",
                                         "trace.csv", "--machine", Source + "/tests/rt/machine.xml"},
@@ -42,24 +76,20 @@ protected:
     ProcessResult result_;
 };
 
-TEST_F(Interface, RunsAMachineAndTakesItDownAgain) {
+TEST_F(Interface, ScansListsRunsAndTakesAMachineDownAgain) {
     play("moves");
-    EXPECT_THAT(result_.output, HasSubstr("run exit 0"));
-    EXPECT_THAT(result_.output, HasSubstr("network in OP"));
-    EXPECT_THAT(result_.output, HasSubstr("sim exit 0"));
-    // 12.5 mm of 20 mm in a turn; the drive holds a count of a 10000th of a turn.
-    const auto ends = linesWith(result_.output, "end: x:");
-    ASSERT_THAT(ends, SizeIs(1)) << result_.output;
-    EXPECT_THAT(ends[0], HasSubstr("x: INIT, drive Switch on disabled"));
-    const std::size_t at = ends[0].find("motor at ");
-    ASSERT_NE(at, std::string::npos);
-    EXPECT_NEAR(std::stod(ends[0].substr(at + 9)), 0.625, 0.01);
-    EXPECT_THAT(linesWith(result_.output, "sim:"), Not(testing::Contains(HasSubstr("with error"))));
-    expectSmoothTrace();
+    expectTheDeviceListed();
+    expectBothMovesDone();
 }
 
-TEST_F(Interface, RunsWithThreeCapabilitiesAndGivesThemUpAfterTheStart) {
-    play("three_capabilities");
+TEST_F(Interface, DoesAllThisWithThreeCapabilities) {
+    play("moves_with_three_capabilities");
+    expectTheDeviceListed();
+    expectBothMovesDone();
+}
+
+TEST_F(Interface, GivesItsCapabilitiesUpAfterTheStart) {
+    play("gives_up_capabilities");
     EXPECT_THAT(result_.output, HasSubstr("network in OP"));
     EXPECT_THAT(result_.output, HasSubstr("run exit 130"));
     const auto left = linesWith(result_.output, "left over:");

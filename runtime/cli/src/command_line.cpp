@@ -293,10 +293,7 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
         checkOptions.searchDirs.push_back(executableFolder());
         return daemon::check(checkOptions);
     }
-    if (app.got_subcommand("sim")) {
-        simOptions.searchDirs.push_back(executableFolder());
-        return daemon::sim(simOptions);
-    }
+    if (app.got_subcommand("sim")) return daemon::sim(simOptions);
     runArguments.options.searchDirs.push_back(executableFolder());
     return daemon::run(runArguments.options, std::move(programs));
 }
