@@ -38,6 +38,7 @@ public:
     [[nodiscard]] const CycleStatistics& statistics() const noexcept { return statistics_; }
 
 private:
+    void passOver(const scheduler::Beat& beat) noexcept;
     void followReferenceClock(const scheduler::Beat& beat) noexcept;
     void keepBooks(const scheduler::Beat& beat, core::HostTime replied,
                    core::HostTime computed) noexcept;

@@ -42,6 +42,13 @@ scheduler::DcLockParams lockFor(const RunOptions& options, const config::Machine
     return params;
 }
 
+/// Missed cycles that the motion makes up for: fewer than stop the machine, and no more than frames
+/// may be lost in a row, because for the drives it is the same.
+std::uint32_t bridgeable(const config::MachineConfig& machine) {
+    const std::uint32_t stopAfter = machine.scheduler.overruns.stopAfter;
+    return std::min(stopAfter > 0 ? stopAfter - 1 : 0, machine.network.lostLimit);
+}
+
 /// The share of the cycle that each program gets: half of it for all together, unless one was given
 /// more.
 double budgetScale(const std::vector<ProgramHost>& programs) {
@@ -120,7 +127,8 @@ bool MachineRun::bringUp() {
 /// Directly before the first cycle.
 void MachineRun::begin() {
     const core::HostTime soon = bus_.clock().now() + machine_.network.cycle;
-    grid_ = scheduler::Grid{bus_.master().firstSend(soon), machine_.network.cycle};
+    grid_ = scheduler::Grid{bus_.master().firstSend(soon), machine_.network.cycle,
+                            bridgeable(machine_)};
     bus_.master().prepare();
     bus_.master().requestOp();
     enter(Phase::GoingOp);

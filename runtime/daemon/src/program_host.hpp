@@ -77,6 +77,7 @@ public:
     [[nodiscard]] std::string watches() const;
 
 private:
+    [[nodiscard]] bool due(core::CycleNumber cycle) noexcept;
     void open(Axes& axes) noexcept;
     void settle(Axes& axes) noexcept;
     void stopAxes(Axes& axes) noexcept;
@@ -90,6 +91,7 @@ private:
     ProgramPhase phase_{ProgramPhase::Waiting};
     bool held_{false};
     core::CycleNumber endCycle_{0};
+    core::CycleNumber lastCycle_{0};  ///< in which cycle() was called
 };
 
 }  // namespace takt::daemon
