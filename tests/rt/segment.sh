@@ -34,6 +34,14 @@ far_sim() {
     await sim.out 'simulated devices on bus1' "$sim"
 }
 end_sim() { kill -TERM "$sim"; wait "$sim"; echo "sim exit $?"; sed 's/^/sim: /' sim.out; }
+# change_machine EXPRESSION…: works on a changed copy of the machine file
+change_machine() {
+    local expressions=() expression
+    for expression; do expressions+=(-e "$expression"); done
+    sed "${expressions[@]}" -e "s|file=\"../../|file=\"$(dirname "$machine")/../../|" "$machine" > machine.xml
+    cmp -s machine.xml "$machine" && { echo "the machine file has nothing to change"; exit 1; }
+    machine=$work/machine.xml
+}
 # tool VERB [OPTION…]: a bus tool on this end
 tool() {
     $as "$takt" "$@" --interface bus0 > tool.out 2>&1
@@ -108,6 +116,25 @@ hangs)
     run hangs --trace trace.csv
     end_sim
     ;;
+interrupt)
+    # PHASE COUNT: the program raises so many signals in that phase of its motion
+    [ "$6" != homing ] || change_machine 's/method="35"/method="17" switchSpeed="20 mm\/s" zeroSpeed="5 mm\/s"/' \
+        's/<Mechanics start="0 mm" inertia="3 kg cm^2"\/>/<Mechanics start="0 mm"><NegativeLimit to="-200 mm"\/><\/Mechanics>/'
+    far_sim
+    export TAKT_TEST_PHASE=$6 TAKT_TEST_COUNT=$7
+    run signals --trace trace.csv --for 30s
+    end_sim
+    ;;
+interrupt_start)
+    far_sim
+    run to_and_fro > run.out 2>&1 &
+    controller=$!
+    await run.out 'interface bus0' "$controller"
+    pkill -INT -P $controller -x takt || kill -INT $controller
+    wait "$controller"
+    cat run.out
+    end_sim
+    ;;
 killed)
     far_sim
     run to_and_fro > run.out 2>&1 &
@@ -119,9 +146,16 @@ killed)
 system_calls)
     far_sim
     for length in 1s 3s; do
-        strace -f -o calls.$length "$takt" run "$machine" --interface bus0 --program "$programs/to_and_fro.so" \
-            --for $length
-        echo "run exit $?"
+        # Traced and on a computer with other things to do, more frames may be late than are tolerated: then once more.
+        for _ in 1 2 3 4 5 6; do
+            strace -f -o calls.$length "$takt" run "$machine" --interface bus0 \
+                --program "$programs/to_and_fro.so" --for $length > run.out 2>&1
+            code=$?
+            [ $code -ne 0 ] || break
+            sed 's/^/once more: /' run.out
+        done
+        echo "run exit $code"
+        cat run.out
     done
     end_sim > /dev/null
     ;;
