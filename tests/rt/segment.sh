@@ -56,6 +56,10 @@ run() {
     LD_PRELOAD=${TAKT_TRAP:-} $as "$takt" run "$machine" --interface bus0 --program "$programs/$program.so" "$@"
     echo "run exit $?"
 }
+run_manual() {
+    LD_PRELOAD=${TAKT_TRAP:-} $as "$takt" run "$machine" --interface bus0 --manual "$@"
+    echo "run exit $?"
+}
 as=''  # the command in front that takes rights away
 three_capabilities='setpriv --bounding-set=-all,+net_raw,+sys_nice,+ipc_lock'
 
@@ -130,7 +134,30 @@ interrupt_start)
     run to_and_fro > run.out 2>&1 &
     controller=$!
     await run.out 'interface bus0' "$controller"
-    pkill -INT -P $controller -x takt || kill -INT $controller
+    pkill -INT -P $controller -x takt
+    wait "$controller"
+    cat run.out
+    end_sim
+    ;;
+stalled)
+    # ATTRIBUTES: of <Realtime>. While an axis moves to and fro, the controller is kept from running for a while.
+    change_machine "s/overruns=\"count\"/$6/"
+    far_sim
+    for ((cycle = 50; cycle < 10000; cycle += 10)); do
+        echo "$cycle heartbeat"
+        ((cycle % 100 != 50)) || echo "$cycle power-on X"
+        ((cycle % 200 != 60)) || echo "$cycle inch X 60 100"
+        ((cycle % 200 != 160)) || echo "$cycle inch X -60 100"
+    done > commands.txt
+    run_manual --commands commands.txt --trace trace.csv > run.out 2>&1 &
+    controller=$!
+    await sim.out 'x: OP, drive Operation enabled'
+    sleep 0.7
+    pkill -STOP -P "$controller" -x takt
+    sleep 0.6
+    pkill -CONT -P "$controller" -x takt
+    # Where it only counts it goes on until it is told to stop.
+    [[ $6 == *react* ]] || { sleep 0.5 && pkill -INT -P "$controller" -x takt; }
     wait "$controller"
     cat run.out
     end_sim
