@@ -44,6 +44,11 @@ std::filesystem::path executableFolder() {
     return error ? std::filesystem::path{} : self.parent_path();
 }
 
+/// A script whose variable is not set must not run another machine than the one it means.
+std::string interfaceNamed(const std::string& text) {
+    return text.empty() ? "no interface is named; `ip link` lists what there is" : std::string{};
+}
+
 /// What `run` needs beyond the options struct until all of the line has been read.
 struct RunArguments {
     daemon::RunOptions options;
@@ -63,6 +68,7 @@ void addRun(CLI::App& app, RunArguments& run) {
     command
         ->add_option("--interface", options.interface,
                      "on the network at this interface, in real time")
+        ->check(interfaceNamed)
         ->excludes(sim)
         ->excludes(fast);
     command->add_option("--program", options.programLibrary,

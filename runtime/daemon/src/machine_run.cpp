@@ -102,10 +102,10 @@ int MachineRun::execute() {
 }
 
 bool MachineRun::bringUp() {
-    console_.line(fmt::format("{}: {} devices, {} axes, cycle {} us{}{}", machine_.name,
+    console_.line(fmt::format("{}: {} devices, {} axes, cycle {} us, {}{}", machine_.name,
                               machine_.network.slaves.size(), axes_.size(),
                               machine_.network.cycle.count() / 1000,
-                              onMachine() ? ", interface " : "", options_.interface));
+                              onMachine() ? "interface " : "simulated", options_.interface));
     if (options_.socket.empty() && server_.path().filename() != machine_.name + ".sock") {
         console_.line(
             fmt::format("control socket {}, since another takt runs a machine of this name",
@@ -207,10 +207,15 @@ void MachineRun::keepHouse(bool cycleRests) {
             held.kind == RunNotice::Kind::NetworkFailed || held.kind == RunNotice::Kind::OpTimedOut;
         if (ofNetwork && !cycleRests) return false;
         reporter_.tell(held);
+        if (held.kind == RunNotice::Kind::ReachedOp)
+            service_.ready(machine_.name + " in operation");
         return true;
     });
     recorders_.drain();
     reporter_.progress(control_.board());
+    const RunEntry run = control_.board().run.read();
+    if (run.phase > RunPhase::Operating) service_.stopping();
+    service_.alive(run.cycle);
 }
 
 void MachineRun::conclude() {

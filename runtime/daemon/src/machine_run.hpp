@@ -19,6 +19,7 @@
 #include "realtime_thread.hpp"
 #include "run_notice.hpp"
 #include "run_reporter.hpp"
+#include "service_notifier.hpp"
 #include "stop_request.hpp"
 
 namespace takt::daemon {
@@ -94,6 +95,7 @@ private:
     RunNotices notices_;
     std::vector<RunNotice> heldBack_;  ///< until what they speak of rests
     RunReporter reporter_;
+    ServiceNotifier service_;
     Phase phase_{Phase::BringUp};
     core::CycleNumber phaseBegan_{0};
     core::CycleNumber now_{0};
