@@ -115,6 +115,12 @@ other_machine)
     run two_moves
     end_sim
     ;;
+long_line)
+    machine=$6
+    far_sim
+    run two_moves --trace trace.csv
+    end_sim
+    ;;
 hangs)
     far_sim
     run hangs --trace trace.csv
