@@ -79,6 +79,9 @@ public:
     [[nodiscard]] std::uint16_t station() const noexcept { return station_; }
     [[nodiscard]] const EmergencyRecord& lastEmergency() const noexcept;
     [[nodiscard]] std::uint32_t emergencies() const noexcept;
+    /// Outside the cycle. For values of any length while neither script nor user asks; null: the
+    /// device has no objects.
+    [[nodiscard]] CoeClient* objectsDirectly() noexcept { return coe_ ? &coe_->client : nullptr; }
 
     bool next(core::HostTime now, Request& request) noexcept override;
     void take(core::HostTime now, const Reply& reply) noexcept override;
