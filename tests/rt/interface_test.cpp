@@ -9,7 +9,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
 
-const std::string Source = TAKT_SOURCE_DIR;
+const std::string sourceFolder = TAKT_SOURCE_DIR;
 
 #ifdef __SANITIZE_THREAD__
 constexpr int SanitizersThreads = 1;  // begun before the program, which knows nothing of it
@@ -108,7 +108,7 @@ TEST_F(Interface, SaysThatAnotherTaktOwnsIt) {
 }
 
 TEST_F(Interface, RefusesAnotherMachineThanTheConfiguredOne) {
-    play("other_machine", {Source + "/samples/03_gantry/machine.xml"});
+    play("other_machine", {sourceFolder + "/samples/03_gantry/machine.xml"});
     EXPECT_THAT(result_.output, HasSubstr("run exit 2"));
     EXPECT_THAT(result_.output, Not(HasSubstr("drive Operation enabled")));
 }
@@ -137,7 +137,7 @@ TEST_F(Interface, LeavesTheDrivesSafeByTheirWatchdogWhenKilled) {
 
 TEST_F(Interface, IsRefusedTogetherWithFast) {
     const auto result = runTakt(
-        {"run", Source + "/tests/rt/machine.xml", "--interface", "bus0", "--fast"}, folder_);
+        {"run", sourceFolder + "/tests/rt/machine.xml", "--interface", "bus0", "--fast"}, folder_);
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_THAT(result.output, HasSubstr("--fast"));
 }
