@@ -106,6 +106,8 @@ AxisStation::Progress AxisStation::call() noexcept {
         case Order::ResetStop:
         case Order::ProgramStart:
         case Order::ProgramStop:
+        case Order::Upload:
+        case Order::Download:
             break;
     }
     return {.done = true};

@@ -29,6 +29,7 @@ void CommandDesk::cycle(core::CycleNumber cycle, bool operating) noexcept {
         }
     }
     runStations(cycle);
+    runBus(cycle);
 }
 
 void CommandDesk::takeAll(core::CycleNumber cycle, bool operating) noexcept {
@@ -39,8 +40,10 @@ void CommandDesk::takeAll(core::CycleNumber cycle, bool operating) noexcept {
     for (std::size_t i = 0; i < MostPerCycle && parts_.rings.commands.pop(command); ++i) {
         if (replaying_ && command.order != Order::MachineStop) {
             if (command.ticket == 0) continue;
-            static_cast<void>(parts_.rings.answers.push(
-                {command.ticket, cycle, AnswerKind::Refused, Refusal::Replaying, {}, 0}));
+            static_cast<void>(parts_.rings.answers.push({.ticket = command.ticket,
+                                                         .cycle = cycle,
+                                                         .kind = AnswerKind::Refused,
+                                                         .refusal = Refusal::Replaying}));
             continue;
         }
         take(command, cycle, operating);
@@ -60,17 +63,18 @@ void CommandDesk::take(const ControlCommand& command, core::CycleNumber cycle,
         parts_.rings.events.add(commandTaken(cycle, command));
     }
     if (verdict.pending || command.ticket == 0) return;
-    static_cast<void>(parts_.rings.answers.push({command.ticket,
-                                                 cycle,
-                                                 refused ? AnswerKind::Refused : AnswerKind::Done,
-                                                 verdict.refusal,
-                                                 {},
-                                                 verdict.detail}));
+    static_cast<void>(parts_.rings.answers.push(
+        {.ticket = command.ticket,
+         .cycle = cycle,
+         .kind = refused ? AnswerKind::Refused : AnswerKind::Done,
+         .refusal = verdict.refusal,
+         .detail = verdict.detail}));
 }
 
-CommandDesk::Verdict CommandDesk::execute(const ControlCommand& command, core::CycleNumber cycle,
+Verdict CommandDesk::execute(const ControlCommand& command, core::CycleNumber cycle,
                                           bool operating) noexcept {
     // Stopping is never refused.
+    // Who only reads gives no sign of life for what moves.
     switch (command.order) {
         case Order::MachineStop:
             parts_.machineStop.request(StopCause::Command, 0, cycle);
@@ -81,18 +85,21 @@ CommandDesk::Verdict CommandDesk::execute(const ControlCommand& command, core::C
             return {};
         case Order::ProgramStop:
             return stopProgram(command);
+        case Order::Upload:
+            return parts_.bus.begin(command, operating);
         default:
             break;
     }
     lastHeartbeat_ = cycle;
     if (command.order == Order::Heartbeat) return {};
+    if (command.order == Order::Download) return parts_.bus.begin(command, operating);
     if (!operating) return {.refusal = Refusal::NotOperating};
     if (command.order == Order::ResetStop) return resetStop();
     if (command.order == Order::ProgramStart) return startProgram(command);
     return commandAxis(command);
 }
 
-CommandDesk::Verdict CommandDesk::commandAxis(const ControlCommand& command) noexcept {
+Verdict CommandDesk::commandAxis(const ControlCommand& command) noexcept {
     if (command.target >= stations_.size()) return {.refusal = Refusal::UnknownTarget};
     const bool finite = std::isfinite(command.distance) && std::isfinite(command.velocity);
     if (!finite) return {.refusal = Refusal::NotFinite};
@@ -105,7 +112,7 @@ CommandDesk::Verdict CommandDesk::commandAxis(const ControlCommand& command) noe
     return {.pending = true};
 }
 
-CommandDesk::Verdict CommandDesk::startProgram(const ControlCommand& command) noexcept {
+Verdict CommandDesk::startProgram(const ControlCommand& command) noexcept {
     if (command.target >= parts_.programs.size()) return {.refusal = Refusal::UnknownTarget};
     ProgramHost& program = parts_.programs[command.target];
     if (program.ended()) return {.refusal = Refusal::ProgramEnded};
@@ -119,7 +126,7 @@ CommandDesk::Verdict CommandDesk::startProgram(const ControlCommand& command) no
     return {};
 }
 
-CommandDesk::Verdict CommandDesk::stopProgram(const ControlCommand& command) noexcept {
+Verdict CommandDesk::stopProgram(const ControlCommand& command) noexcept {
     if (command.target >= parts_.programs.size()) return {.refusal = Refusal::UnknownTarget};
     ProgramHost& program = parts_.programs[command.target];
     if (program.ended()) return {.refusal = Refusal::ProgramEnded};
@@ -127,7 +134,7 @@ CommandDesk::Verdict CommandDesk::stopProgram(const ControlCommand& command) noe
     return {};
 }
 
-CommandDesk::Verdict CommandDesk::resetStop() noexcept {
+Verdict CommandDesk::resetStop() noexcept {
     if (!parts_.machineStop.active()) return {.refusal = Refusal::NotStopped};
     const auto input = static_cast<std::uint16_t>(parts_.machineStop.activeInput());
     if (!parts_.machineStop.reset(parts_.axes)) {
@@ -159,6 +166,11 @@ void CommandDesk::runStations(core::CycleNumber cycle) noexcept {
         }
         if (answer->ticket != 0) static_cast<void>(parts_.rings.answers.push(*answer));
     }
+}
+
+void CommandDesk::runBus(core::CycleNumber cycle) noexcept {
+    const auto answer = parts_.bus.cycle(cycle);
+    if (answer && answer->ticket != 0) static_cast<void>(parts_.rings.answers.push(*answer));
 }
 
 }  // namespace takt::daemon

@@ -11,6 +11,7 @@
 
 #include "axes.hpp"
 #include "axis_station.hpp"
+#include "bus_desk.hpp"
 #include "control_command.hpp"
 #include "machine_stop.hpp"
 #include "program_host.hpp"
@@ -38,6 +39,7 @@ public:
         Axes& axes;
         std::span<ProgramHost> programs;
         MachineStop& machineStop;
+        BusDesk& bus;
         ControlRings& rings;
     };
     /// \param replay commands in the order of their cycles; when there are any, those from the ring
@@ -54,12 +56,6 @@ public:
     [[nodiscard]] std::size_t holderOf(std::size_t axis) const noexcept;
 
 private:
-    struct Verdict {
-        Refusal refusal{Refusal::None};
-        std::uint16_t detail{0};
-        bool pending{false};  ///< the station answers
-    };
-
     void takeAll(core::CycleNumber cycle, bool operating) noexcept;
     void take(const ControlCommand& command, core::CycleNumber cycle, bool operating) noexcept;
     [[nodiscard]] Verdict execute(const ControlCommand& command, core::CycleNumber cycle,
@@ -70,6 +66,7 @@ private:
     [[nodiscard]] Verdict resetStop() noexcept;
     void letGoAll() noexcept;
     void runStations(core::CycleNumber cycle) noexcept;
+    void runBus(core::CycleNumber cycle) noexcept;
 
     Parts parts_;
     std::deque<AxisStation> stations_;

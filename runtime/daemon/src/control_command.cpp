@@ -25,6 +25,8 @@ constexpr std::array<OrderInfo, OrderCount> Orders{{
     {"reset-stop", OrderTarget::None},
     {"program-start", OrderTarget::Program},
     {"program-stop", OrderTarget::Program},
+    {"upload", OrderTarget::Device},
+    {"download", OrderTarget::Device},
 }};
 
 }  // namespace

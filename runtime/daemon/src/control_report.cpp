@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "control_server.hpp"
+#include "network_summary.hpp"
 
 namespace takt::daemon {
 
@@ -65,6 +66,13 @@ StatusReport ControlServer::report() const {
         report.programs.push_back(reportOf(board.programs[i].read(), parts_.programs[i]));
     }
     return report;
+}
+
+NetworkReport ControlServer::networkReport() const {
+    const DiagnosisBoard& board = parts_.control.diagnosis();
+    std::vector<DeviceEntry> devices;
+    for (const auto& device : board.devices) devices.push_back(device.read());
+    return summarize(parts_.machine, board.run.read(), devices);
 }
 
 std::vector<EventReport> ControlServer::eventsAfter(std::uint64_t number) const {

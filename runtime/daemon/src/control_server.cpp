@@ -8,10 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
+#include <takt/wire/al_state.hpp>
 #include <utility>
 
 #include "command_file.hpp"
+#include "object_text.hpp"
 #include "realtime_thread.hpp"
 
 namespace takt::daemon {
@@ -73,6 +76,7 @@ void ControlServer::serve() {
     while (!ending_) {
         waitForClients();
         takeAnswers();
+        answerInquiries();
         takeEvents();
         takeCommands();
         watchOwner();
@@ -154,6 +158,8 @@ void ControlServer::handle(std::uint64_t number, Client& client, std::string_vie
     } else if (request->verb == "events") {
         takeEvents();
         reply.events = eventsAfter(request->after);
+    } else if (request->verb == "network") {
+        return inquire(number, client, *request);
     } else {
         return order(number, client, *request);
     }
@@ -170,9 +176,10 @@ void ControlServer::order(std::uint64_t number, Client& client, const ControlReq
     if (std::string why = commandOf(request, command); !why.empty())
         return refuse(client, request, why);
     const bool isHeartbeat = command.order == Order::Heartbeat;
-    // A heartbeat of somebody who does not operate means nothing; anybody may stop the machine.
+    // A heartbeat of somebody who does not operate means nothing; anybody may stop the machine, and
+    // look at it.
     if (isHeartbeat && owner_ != number) return;
-    if (command.order != Order::MachineStop) {
+    if (command.order != Order::MachineStop && command.order != Order::Upload) {
         if (std::string why = claim(number, client); !why.empty())
             return refuse(client, request, why);
     }
@@ -191,18 +198,37 @@ void ControlServer::order(std::uint64_t number, Client& client, const ControlReq
 std::string ControlServer::commandOf(const ControlRequest& request, ControlCommand& command) const {
     const auto order = orderOf(request.verb);
     if (!order) return fmt::format("there is no request '{}'", request.verb);
-    const ControlNames& names = parts_.control.names();
     command.order = *order;
     command.distance = request.distance;
     command.velocity = request.velocity;
-    const bool ofAxis = targetOf(*order) == OrderTarget::Axis;
-    if (targetOf(*order) == OrderTarget::None) return {};
-    const auto& known = ofAxis ? names.axes : names.programs;
-    const std::string& wanted = ofAxis ? request.axis : request.program;
+    command.force = request.force;
+    if (std::string why = targetOf(request, command); !why.empty()) return why;
+    if (daemon::targetOf(*order) != OrderTarget::Device) return {};
+    if (!parseObject(request.object, command.object))
+        return "\"object\" must be like \"0x6065:0\"";
+    if (*order == Order::Download && !parseBytes(request.data, command.value))
+        return "\"data\" must be one to eight bytes in hexadecimal";
+    return {};
+}
+
+std::string ControlServer::targetOf(const ControlRequest& request, ControlCommand& command) const {
+    const OrderTarget kind = daemon::targetOf(command.order);
+    if (kind == OrderTarget::None) return {};
+    const auto& known = namesOf(kind, parts_.control.names());
+    const char* const word = kind == OrderTarget::Axis      ? "axis"
+                             : kind == OrderTarget::Program ? "program"
+                                                            : "device";
+    const std::string& wanted = kind == OrderTarget::Axis      ? request.axis
+                                : kind == OrderTarget::Program ? request.program
+                                                               : request.device;
     command.target = indexOf(known, wanted);
     if (command.target < known.size()) return {};
-    return fmt::format("there is no {} '{}'; allowed: {}", ofAxis ? "axis" : "program", wanted,
-                       fmt::join(known, ", "));
+    if (kind == OrderTarget::Device) {
+        const char* const end = wanted.data() + wanted.size();
+        const auto [rest, error] = std::from_chars(wanted.data(), end, command.target);
+        if (error == std::errc{} && rest == end && command.target < known.size()) return {};
+    }
+    return fmt::format("there is no {} '{}'; allowed: {}", word, wanted, fmt::join(known, ", "));
 }
 
 /// Makes the client the owner, or says who is.
@@ -220,6 +246,26 @@ std::string ControlServer::claim(std::uint64_t number, const Client& client) {
     return {};
 }
 
+void ControlServer::inquire(std::uint64_t number, Client& client, const ControlRequest& request) {
+    const RunPhase phase = parts_.control.board().run.read().phase;
+    if (phase == RunPhase::BringUp || phase == RunPhase::Over)
+        return refuse(client, request, "no cycle runs: the network is brought up, or the run ends");
+    if (inquiries_.size() >= MostTickets) return refuse(client, request, "too many at once");
+    inquiries_.push_back({number, request.id, parts_.control.diagnosis().ask()});
+}
+
+void ControlServer::answerInquiries() {
+    std::erase_if(inquiries_, [this](const Inquiry& inquiry) {
+        const auto client = clients_.find(inquiry.client);
+        if (client == clients_.end()) return true;
+        if (!parts_.control.diagnosis().shown(inquiry.number)) return false;
+        ControlReply reply{.id = inquiry.request};
+        reply.network = networkReport();
+        client->second.unsent += encode(reply);
+        return true;
+    });
+}
+
 void ControlServer::takeAnswers() {
     ControlAnswer answer;
     while (parts_.control.rings().answers.pop(answer)) {
@@ -231,6 +277,12 @@ void ControlServer::takeAnswers() {
         if (client == clients_.end()) continue;
         ControlReply reply{
             .id = ticket.request, .kind = kindOf(answer.kind), .error = {}, .cycle = answer.cycle};
+        reply.data = formatBytes(answer.value);
+        reply.abortCode = answer.abortCode;
+        if (answer.abortCode != 0) {
+            reply.error =
+                fmt::format("0x{:08X} {}", answer.abortCode, wire::explainAbort(answer.abortCode));
+        }
         if (answer.error != axis::ErrorId::None) {
             const axis::ErrorInfo& info = axis::errorInfo(answer.error);
             reply.error = fmt::format("{}: {} {}", info.name, info.text, info.remedy);

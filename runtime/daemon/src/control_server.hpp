@@ -66,6 +66,12 @@ private:
         Order order{};
         std::uint16_t target{0};
     };
+    /// Who waits for a diagnosis to be shown.
+    struct Inquiry {
+        std::uint64_t client{0};
+        std::uint64_t request{0};
+        std::uint32_t number{0};
+    };
     using Time = std::chrono::steady_clock::time_point;
 
     void serve();
@@ -76,8 +82,12 @@ private:
     void order(std::uint64_t number, Client& client, const ControlRequest& request);
     [[nodiscard]] std::string commandOf(const ControlRequest& request,
                                         ControlCommand& command) const;
+    [[nodiscard]] std::string targetOf(const ControlRequest& request,
+                                       ControlCommand& command) const;
     [[nodiscard]] std::string claim(std::uint64_t number, const Client& client);
     void refuse(Client& client, const ControlRequest& request, std::string why);
+    void inquire(std::uint64_t number, Client& client, const ControlRequest& request);
+    void answerInquiries();
     void takeAnswers();
     void takeEvents();
     void takeCommands();
@@ -86,6 +96,7 @@ private:
     void dropGone();
     void leave();
     [[nodiscard]] StatusReport report() const;
+    [[nodiscard]] NetworkReport networkReport() const;
     [[nodiscard]] std::vector<EventReport> eventsAfter(std::uint64_t number) const;
     [[nodiscard]] double secondsOf(core::CycleNumber cycle) const;
     [[nodiscard]] std::string ownerName() const;
@@ -96,6 +107,7 @@ private:
     std::map<std::uint64_t, Client> clients_;
     std::uint64_t lastClient_{0};
     std::map<std::uint64_t, Ticket> tickets_;
+    std::vector<Inquiry> inquiries_;
     std::uint64_t lastTicket_{0};
     std::uint64_t owner_{0};  ///< 0 = nobody
     Time ownerSeen_{};

@@ -31,15 +31,8 @@ std::string nameIn(const std::vector<std::string>& names, std::size_t index) {
 }
 
 std::string targetName(Order order, std::uint16_t target, const ControlNames& names) {
-    switch (targetOf(order)) {
-        case OrderTarget::None:
-            return {};
-        case OrderTarget::Axis:
-            return " " + nameIn(names.axes, target);
-        case OrderTarget::Program:
-            return " " + nameIn(names.programs, target);
-    }
-    return {};
+    if (targetOf(order) == OrderTarget::None) return {};
+    return " " + nameIn(namesOf(targetOf(order), names), target);
 }
 
 axis::ErrorRecord errorOf(const record::Event& event) noexcept {
@@ -113,6 +106,11 @@ record::Event operatorLost(core::CycleNumber cycle, std::uint16_t axis) noexcept
     return event(cycle, EventId::OperatorLost, axis);
 }
 
+const std::vector<std::string>& namesOf(OrderTarget target, const ControlNames& names) noexcept {
+    if (target == OrderTarget::Axis) return names.axes;
+    return target == OrderTarget::Program ? names.programs : names.devices;
+}
+
 const char* name(ProgramPhase phase, bool held) noexcept {
     switch (phase) {
         case ProgramPhase::Waiting:
@@ -147,7 +145,9 @@ std::string explain(Refusal refusal, Order order, std::uint16_t target, std::uin
                 "axis{} is held by program '{}'; do: stop the program, or run with --manual",
                 targetName(order, target, names), nameIn(names.programs, detail));
         case Refusal::Busy:
-            return "the last command for this axis still runs";
+            return targetOf(order) == OrderTarget::Device
+                       ? "too many objects are asked for at once"
+                       : "the last command for this axis still runs";
         case Refusal::Block:
             return "the block refused it";
         case Refusal::StopActive:
@@ -161,6 +161,15 @@ std::string explain(Refusal refusal, Order order, std::uint16_t target, std::uin
             return "the program runs already";
         case Refusal::OperatorMoves:
             return fmt::format("axis {} moves for the operator", nameIn(names.axes, detail));
+        case Refusal::ProgramsRun:
+            return fmt::format(
+                "program '{}' runs, and a written object may disturb it; do: stop it first, or "
+                "write with --force",
+                nameIn(names.programs, detail));
+        case Refusal::AxisMoves:
+            return fmt::format("axis {} moves; do: stop it first", nameIn(names.axes, detail));
+        case Refusal::OfTheCycle:
+            return "the cycle writes this object with the process data";
         case Refusal::Replaying:
             return "a command file is being replayed";
     }

@@ -52,6 +52,7 @@ ControlNames controlNames(const config::MachineConfig& machine,
     }
     for (const ProgramHost& program : programs) names.programs.push_back(program.name());
     for (const auto& input : machine.machineStop.inputs) names.stopInputs.push_back(input.name);
+    for (const auto& slave : machine.network.slaves) names.devices.push_back(slave.name);
     return names;
 }
 
@@ -59,9 +60,11 @@ MachineControl::MachineControl(const Parts& parts, std::vector<TakenCommand> rep
     : parts_{parts},
       names_{controlNames(parts.machine, parts.programs)},
       board_{parts.axes.size(), parts.programs.size()},
+      diagnosis_{parts.machine.network.slaves.size()},
       stop_{parts.machine.machineStop, parts.machine.network.cycle,
             bindInputs(parts.machine, parts.master)},
-      desk_{{parts.axes, parts.programs, stop_, rings_},
+      bus_{{parts.machine.network, parts.machine.axes, parts.master, parts.axes, parts.programs}},
+      desk_{{parts.axes, parts.programs, stop_, bus_, rings_},
             parts.machine.network.cycle,
             std::move(replay),
             record} {

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "axes.hpp"
+#include "bus_desk.hpp"
 #include "command_desk.hpp"
 #include "control_command.hpp"
+#include "diagnosis_board.hpp"
 #include "event_text.hpp"
 #include "machine_stop.hpp"
 #include "program_host.hpp"
@@ -43,6 +45,7 @@ public:
 
     [[nodiscard]] ControlRings& rings() noexcept { return rings_; }
     [[nodiscard]] const StatusBoard& board() const noexcept { return board_; }
+    [[nodiscard]] DiagnosisBoard& diagnosis() noexcept { return diagnosis_; }
     [[nodiscard]] const ControlNames& names() const noexcept { return names_; }
     [[nodiscard]] const MachineStop& machineStop() const noexcept { return stop_; }
 
@@ -68,7 +71,9 @@ private:
     ControlNames names_;
     ControlRings rings_;
     StatusBoard board_;
+    DiagnosisBoard diagnosis_;
     MachineStop stop_;
+    BusDesk bus_;
     CommandDesk desk_;
     Seen seen_;
 };

@@ -17,6 +17,20 @@ void MachineRun::oneCycle() noexcept {
     const core::CycleGuard guard;
     superviseOverruns(beat);
     supervise();
+    if (control_.diagnosis().wanted()) control_.diagnosis().show(diagnosis(), bus_.master());
+}
+
+DiagnosisEntry MachineRun::diagnosis() const noexcept {
+    return {.cycle = now_,
+            .statistics = cycle_.statistics(),
+            .lateWakeUps = overruns_.overruns(),
+            .missedCycles = overruns_.skipped(),
+            .relocks = dcLock_.relocks(),
+            .clockLocked = dcLock_.locked(),
+            .driftPpm = dcLock_.driftPpm(),
+            .network = bus_.master().state(),
+            .problem = bus_.master().problemRecord(),
+            .counters = bus_.master().counters()};
 }
 
 void MachineRun::supervise() noexcept {

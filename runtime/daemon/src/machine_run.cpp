@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <takt/fieldbus/bus_timing.hpp>
 #include <thread>
 #include <utility>
 
@@ -24,8 +25,9 @@ double seconds(core::Duration duration) {
 }
 
 std::unique_ptr<BusEnd> endFor(const RunOptions& options, const config::MachineConfig& machine) {
-    return options.interface.empty() ? simulatedEnd(machine)
-                                     : interfaceEnd(machine, options.interface);
+    if (options.interface.empty()) return simulatedEnd(machine);
+    // One more than the cycle needs: what answers late must not keep a reply out.
+    return interfaceEnd(options.interface, fieldbus::computeTiming(machine.network).frames + 1);
 }
 
 /// A real computer sends a little later or earlier each time; a lock that waits for the precision
@@ -214,26 +216,25 @@ void MachineRun::conclude() {
     if (reporter_.tellAxisErrors(axes_) && code_ == ExitCode::Good) code_ = ExitCode::MachineFault;
     const double simulated = static_cast<double>(now_) * seconds(machine_.network.cycle);
     const double wall = seconds(pace_.elapsed());
-    const auto counters = bus_.master().counters();
-    console_.line(fmt::format(
-        "{:.3f} s in {} cycles, {:.1f} times real time; frames {} sent, {} lost, {} late; "
-        "working counter errors {}; largest DC phase error {} ns, controller's clock {:+.1f} ppm "
-        "against the reference",
-        simulated, now_, wall > 0 ? simulated / wall : 0.0, counters.framesSent,
-        counters.framesLost, counters.framesLate, counters.workingCounterErrors,
-        cycle_.worstPhaseError().count(), dcLock_.driftPpm()));
-    if (onMachine()) tellStatistics();
+    const NetworkReport network = networkReport();
+    console_.line(fmt::format("{:.3f} s in {} cycles, {:.1f} times real time; {}", simulated, now_,
+                              wall > 0 ? simulated / wall : 0.0, frameSummary(network)));
+    if (!onMachine()) return;
+    for (const std::string& line : timeTable(network)) console_.line(line);
+    const bool anyTrouble =
+        std::any_of(network.devices.begin(), network.devices.end(), [](const DeviceReport& device) {
+            return !device.workingCounter.empty() || device.emergencies > 0;
+        });
+    if (!anyTrouble) return;
+    for (const std::string& line : deviceTable(network)) console_.line(line);
 }
 
-void MachineRun::tellStatistics() {
-    const CycleStatistics& statistics = cycle_.statistics();
-    console_.line(fmt::format(
-        "missed cycles {}, in {} late wake-ups: {} by the host, {} by the bus, {} by programs, {} "
-        "by "
-        "axes; DC lock lost {} times",
-        overruns_.skipped(), overruns_.overruns(), statistics.missedBy[0], statistics.missedBy[1],
-        statistics.missedBy[2], statistics.missedBy[3], dcLock_.relocks()));
-    for (const std::string& line : describe(statistics)) console_.line(line);
+/// \pre no cycle runs
+NetworkReport MachineRun::networkReport() {
+    std::vector<DeviceEntry> devices;
+    for (std::size_t i = 0; i < machine_.network.slaves.size(); ++i)
+        devices.push_back(entryOf(bus_.master(), i));
+    return summarize(machine_, diagnosis(), devices);
 }
 
 std::string MachineRun::summary() const {

@@ -14,6 +14,7 @@
 #include "loading.hpp"
 #include "machine_control.hpp"
 #include "machine_cycle.hpp"
+#include "network_summary.hpp"
 #include "pace.hpp"
 #include "program_watchdog.hpp"
 #include "realtime_thread.hpp"
@@ -53,12 +54,13 @@ private:
     void runOnThreads();
     void keepHouse(bool cycleRests);
     void conclude();
-    void tellStatistics();
+    [[nodiscard]] NetworkReport networkReport();
     [[noreturn]] void leaveHangingProgram(std::size_t program, core::CycleNumber cycle);
 
     // rt, after each cycle.
     void oneCycle() noexcept;
     void supervise() noexcept;
+    [[nodiscard]] DiagnosisEntry diagnosis() const noexcept;
     void superviseOverruns(const scheduler::Beat& beat) noexcept;
     void superviseGoingOp() noexcept;
     void superviseOperating() noexcept;
