@@ -4,6 +4,7 @@
 #include <climits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <takt/cli/command_line.hpp>
 #include <takt/daemon/run.hpp>
 #include <takt/daemon/sim.hpp>
@@ -129,6 +130,12 @@ CLI::App* addBusVerb(CLI::App& app, const char* name, const char* text, BusOptio
     auto* interface = command->add_option("--interface", bus.interface, "network interface");
     command->add_option("--sim", bus.machine, "the simulated network of this machine file")
         ->excludes(interface);
+    if (std::string_view{name} != "scan") {
+        command
+            ->add_option("--socket", bus.socket,
+                         "control socket of a running machine; needed when several run")
+            ->excludes(interface);
+    }
     command->add_option("--esi", bus.esi, "more device files to know devices by");
     command->add_flag("--json", bus.json, "as JSON");
     return command;
@@ -152,11 +159,14 @@ void addBusVerbs(CLI::App& app, BusArguments& arguments) {
                             "uint16, int32, float …; without: as the device file says");
     }
     download->add_option("value", object.value, "decimal, or hexadecimal with 0x")->required();
+    download->add_flag("--force", object.force,
+                       "also while a program of the running machine runs or the axis moves");
 }
 
 /// \return empty: another verb was given
 std::optional<int> runBusVerb(const CLI::App& app, BusArguments& arguments) {
     arguments.bus.executableFolder = executableFolder();
+    arguments.bus.verb = app.get_subcommands().front()->get_name();
     arguments.states.bus = arguments.object.bus = arguments.bus;
     if (app.got_subcommand("scan")) return scan(arguments.bus);
     if (app.got_subcommand("slaves")) return slaves(arguments.bus);
@@ -170,6 +180,7 @@ std::optional<int> runBusVerb(const CLI::App& app, BusArguments& arguments) {
 struct RemoteArguments {
     WatchOptions watch;
     EventsOptions events;
+    DiagOptions diag;
     JogOptions jog;
     OrderOptions order;
     std::string powerState;
@@ -190,6 +201,9 @@ void addTables(CLI::App& app, RemoteArguments& remote) {
     auto* events = app.add_subcommand("events", "show what has happened in the running machine");
     events->add_flag("--follow,-f", remote.events.follow, "go on with what happens now");
     addRemoteOptions(*events, remote.events.remote, true);
+    auto* diag = app.add_subcommand(
+        "diag", "how cycle, clocks and devices of the running machine are doing");
+    addRemoteOptions(*diag, remote.diag.remote, true);
     auto* jog =
         app.add_subcommand("jog", "move an axis of the running machine step by step with the keys");
     jog->add_option("axis", remote.jog.axis, "name of the axis")->required();
@@ -233,6 +247,7 @@ std::optional<int> runRemote(const CLI::App& app, RemoteArguments& remote) {
     std::string& verb = remote.order.request.verb;
     if (app.got_subcommand("watch")) return runWatch(remote.watch);
     if (app.got_subcommand("events")) return runEvents(remote.events);
+    if (app.got_subcommand("diag")) return runDiag(remote.diag);
     if (app.got_subcommand("jog")) return runJog(remote.jog);
     if (app.got_subcommand("power")) verb = "power-" + remote.powerState;
     if (app.got_subcommand("reset"))

@@ -63,16 +63,16 @@ void CommandDesk::take(const ControlCommand& command, core::CycleNumber cycle,
         parts_.rings.events.add(commandTaken(cycle, command));
     }
     if (verdict.pending || command.ticket == 0) return;
-    static_cast<void>(parts_.rings.answers.push(
-        {.ticket = command.ticket,
-         .cycle = cycle,
-         .kind = refused ? AnswerKind::Refused : AnswerKind::Done,
-         .refusal = verdict.refusal,
-         .detail = verdict.detail}));
+    static_cast<void>(
+        parts_.rings.answers.push({.ticket = command.ticket,
+                                   .cycle = cycle,
+                                   .kind = refused ? AnswerKind::Refused : AnswerKind::Done,
+                                   .refusal = verdict.refusal,
+                                   .detail = verdict.detail}));
 }
 
 Verdict CommandDesk::execute(const ControlCommand& command, core::CycleNumber cycle,
-                                          bool operating) noexcept {
+                             bool operating) noexcept {
     // Stopping is never refused.
     // Who only reads gives no sign of life for what moves.
     switch (command.order) {

@@ -83,8 +83,8 @@ struct ControlAnswer {
     Refusal refusal{Refusal::None};
     axis::ErrorId error{axis::ErrorId::None};
     std::uint16_t detail{0};
-    core::ObjectValue value{};    ///< what an upload has read
-    std::uint32_t abortCode{0};   ///< why a device refused; 0 = it did not
+    core::ObjectValue value{};   ///< what an upload has read
+    std::uint32_t abortCode{0};  ///< why a device refused; 0 = it did not
 };
 
 /// What a desk says to a command.

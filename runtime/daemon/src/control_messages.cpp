@@ -200,8 +200,7 @@ std::optional<ControlReply> parseReply(std::string_view text, std::string& error
     }
     if (const Json* status = members.object("status")) reply.status = statusOf(*status, error);
     if (const Json* events = members.array("events")) reply.events = eventsOf(*events, error);
-    if (const Json* network = members.object("network"))
-        reply.network = networkOf(*network, error);
+    if (const Json* network = members.object("network")) reply.network = networkOf(*network, error);
     if (!members.good()) return std::nullopt;
     return reply;
 }

@@ -204,8 +204,7 @@ std::string ControlServer::commandOf(const ControlRequest& request, ControlComma
     command.force = request.force;
     if (std::string why = targetOf(request, command); !why.empty()) return why;
     if (daemon::targetOf(*order) != OrderTarget::Device) return {};
-    if (!parseObject(request.object, command.object))
-        return "\"object\" must be like \"0x6065:0\"";
+    if (!parseObject(request.object, command.object)) return "\"object\" must be like \"0x6065:0\"";
     if (*order == Order::Download && !parseBytes(request.data, command.value))
         return "\"data\" must be one to eight bytes in hexadecimal";
     return {};

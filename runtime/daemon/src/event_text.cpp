@@ -54,6 +54,10 @@ std::string textOfCommand(const record::Event& event, const ControlNames& names)
         return fmt::format("{} refused: {}", words,
                            explain(as<Refusal>(event.numbers[2]), order, target, detail, names));
     }
+    if (targetOf(order) == OrderTarget::Device) {
+        words += fmt::format(" 0x{:04X}:{}", static_cast<unsigned>(event.numbers[2]),
+                             static_cast<unsigned>(event.numbers[3]));
+    }
     if (order == Order::Inch) {
         const std::string unit = nameIn(names.units, target);
         words += fmt::format(" by {:+g} {} at {:g} {}/s", event.numbers[2], unit, event.numbers[3],
@@ -88,9 +92,13 @@ record::Event machineStopReset(core::CycleNumber cycle) noexcept {
     return event(cycle, EventId::MachineStopReset, 0);
 }
 record::Event commandTaken(core::CycleNumber cycle, const ControlCommand& command) noexcept {
-    return event(cycle, EventId::CommandTaken, 0,
-                 {number(command.order), static_cast<double>(command.target), command.distance,
-                  command.velocity});
+    std::array<double, 4> numbers{number(command.order), static_cast<double>(command.target),
+                                  command.distance, command.velocity};
+    if (targetOf(command.order) == OrderTarget::Device) {
+        numbers[2] = static_cast<double>(command.object.index);
+        numbers[3] = static_cast<double>(command.object.subindex);
+    }
+    return event(cycle, EventId::CommandTaken, 0, numbers);
 }
 record::Event commandRefused(core::CycleNumber cycle, const ControlCommand& command,
                              Refusal refusal, std::uint16_t detail) noexcept {

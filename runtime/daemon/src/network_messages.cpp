@@ -103,7 +103,8 @@ void take(const Json& json, TimesReport& times, std::string& error) {
 Json jsonOf(const NetworkReport& network) {
     Json json = Json::object();
     eachOfNetwork(network, [&json](const char* name, const auto& value) { json[name] = value; });
-    eachTimes(network, [&json](const char* name, const auto& times) { json[name] = jsonOf(times); });
+    eachTimes(network,
+              [&json](const char* name, const auto& times) { json[name] = jsonOf(times); });
     json["devices"] = Json::array();
     for (const DeviceReport& device : network.devices) {
         Json item = Json::object();

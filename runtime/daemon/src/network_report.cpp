@@ -67,16 +67,16 @@ std::vector<std::string> timeTable(const NetworkReport& network) {
     }
     lines.push_back(heading);
     for (const auto& [upTo, counts] : bins) {
-        lines.push_back(fmt::format("{:<15}{:>10}{:>10}{:>10}{:>10}", microseconds(upTo), counts[0],
-                                    counts[1], counts[2], counts[3]));
+        lines.push_back(fmt::format("{:<15.3f}{:>10}{:>10}{:>10}{:>10}",
+                                    static_cast<double>(upTo) / 1000.0, counts[0], counts[1],
+                                    counts[2], counts[3]));
     }
     return lines;
 }
 
 std::vector<std::string> deviceTable(const NetworkReport& network) {
     std::size_t width = 6;
-    for (const DeviceReport& device : network.devices)
-        width = std::max(width, device.name.size());
+    for (const DeviceReport& device : network.devices) width = std::max(width, device.name.size());
     std::vector<std::string> lines{fmt::format("{:>3}  {:<{}}  {:<14}  {:>11}  {}", "pos", "device",
                                                width, "state", "emergencies",
                                                "AL status, working counter")};

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <span>
-#include <takt/daemon/network_report.hpp>
 #include <takt/config/machine_config.hpp>
+#include <takt/daemon/network_report.hpp>
 
 #include "diagnosis_board.hpp"
 

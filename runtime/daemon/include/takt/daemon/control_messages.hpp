@@ -85,8 +85,8 @@ struct ControlReply {
     ReplyKind kind{ReplyKind::Done};
     std::string error{};  ///< why refused or failed
     std::uint64_t cycle{0};
-    std::string data{};           ///< of an upload: the bytes as on the wire
-    std::uint64_t abortCode{0};   ///< with which a device refused an object
+    std::string data{};          ///< of an upload: the bytes as on the wire
+    std::uint64_t abortCode{0};  ///< with which a device refused an object
     std::optional<StatusReport> status{};
     std::optional<std::vector<EventReport>> events{};
     std::optional<NetworkReport> network{};

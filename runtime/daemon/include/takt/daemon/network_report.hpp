@@ -35,16 +35,16 @@ struct DeviceReport {
     std::uint64_t vendor{0};
     std::uint64_t product{0};
     std::uint64_t revision{0};
-    std::string state{};  ///< AL state; "None": does not answer
+    std::string state{};  ///< "OP"; "NONE": does not answer
     bool error{false};
     std::uint64_t alStatusCode{0};
-    std::string problem{};  ///< AL status in words; empty: none
-    std::uint64_t group{0};  ///< datagram that carries its process data
+    std::string problem{};      ///< AL status in words; empty: none
+    std::uint64_t group{0};     ///< datagram that carries its process data
     std::uint64_t expected{0};  ///< working counter of that datagram
     std::uint64_t lastSeen{0};
-    std::uint64_t wrong{0};      ///< cycles with another working counter
-    std::uint64_t lost{0};       ///< cycles without a reply
-    std::uint64_t lostInRow{0};  ///< cycles without valid inputs, now
+    std::uint64_t wrong{0};        ///< cycles with another working counter
+    std::uint64_t lost{0};         ///< cycles without a reply
+    std::uint64_t lostInRow{0};    ///< cycles without valid inputs, now
     std::string workingCounter{};  ///< what is wrong with it in words; empty: nothing ever was
     std::uint64_t emergencies{0};
     std::uint64_t lastEmergency{0};  ///< error code of the last one
