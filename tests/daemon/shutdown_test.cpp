@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "machine_files.hpp"
+#include "running_takt.hpp"
 #include "takt_process.hpp"
 #include "trace_file.hpp"
 
@@ -113,6 +116,21 @@ TEST(Shutdown, ASecondSignalLetsTheDriveStopQuickly) {
         quick = quick || (running && (control & 0x87U) == 0x02U);
     }
     EXPECT_TRUE(quick);
+}
+
+TEST(Shutdown, NamesTheErrorStopOfAnAxisAlsoWhenASignalEndsTheRun) {
+    const std::string folder = freshFolder("shutdown_error_stop");
+    writeFile(folder + "/faults.xml",
+              "<Faults><LostFrames cycle=\"400\" cycles=\"6\"/></Faults>\n");
+    RunningTakt machine{"shutdown_error_stop_run",
+                        {"run", Gantry, "--sim", "--program", programPath("signals"), "--faults",
+                         folder + "/faults.xml"},
+                        {"TAKT_TEST_PHASE=never"}};
+    SocketClient{machine.socket()}.awaitState("X", "ErrorStop");
+    machine.signal(SIGINT);
+    const auto result = machine.end();
+    EXPECT_EQ(result.exitCode, 130) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("axis X ended in ErrorStop"));
 }
 
 TEST(Shutdown, NamesTheAxisThatDoesNotStopInTime) {

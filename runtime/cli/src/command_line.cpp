@@ -231,11 +231,12 @@ void addOrders(CLI::App& app, RemoteArguments& remote) {
     home->add_option("axis", request.axis, "name of the axis")->required();
     auto* stop =
         app.add_subcommand("stop", "stop the running machine: axes ramp down and are switched off");
-    auto* program =
-        app.add_subcommand("program", "stop a program of the running machine, or let it go on");
-    program->add_option("action", remote.programAction, "start or stop")
+    auto* program = app.add_subcommand("program",
+                                       "stop a program of the running machine, let it go on, or "
+                                       "put a fresh instance in its place");
+    program->add_option("action", remote.programAction, "start, stop or reset")
         ->required()
-        ->check(CLI::IsMember({"start", "stop"}));
+        ->check(CLI::IsMember({"start", "stop", "reset"}));
     program->add_option("name", request.program, "name of the program")->required();
     for (CLI::App* command : {power, reset, home, stop, program}) {
         addRemoteOptions(*command, remote.order.remote, true);

@@ -17,8 +17,12 @@ CommandDesk::CommandDesk(const Parts& parts, core::Duration cycle, std::vector<T
       record_{record},
       heartbeatLimit_{static_cast<core::CycleNumber>(HeartbeatTime / cycle)} {}
 
-void CommandDesk::cycle(core::CycleNumber cycle, bool operating) noexcept {
+void CommandDesk::cycle(core::CycleNumber cycle, bool operating, bool allTold) noexcept {
     takeAll(cycle, operating);
+    if (parked_ && allTold) {
+        answer(*parked_, resetProgram(*parked_, operating), cycle);
+        parked_.reset();
+    }
     const bool lost = cycle - lastHeartbeat_ > heartbeatLimit_;
     if (lost || !operating) {
         for (std::size_t i = 0; i < stations_.size(); ++i) {
@@ -56,13 +60,19 @@ void CommandDesk::take(const ControlCommand& command, core::CycleNumber cycle,
         parts_.rings.takenLost.fetch_add(1, std::memory_order_relaxed);
     }
     const Verdict verdict = execute(command, cycle, operating);
-    const bool refused = verdict.refusal != Refusal::None;
-    if (refused) {
-        parts_.rings.events.add(commandRefused(cycle, command, verdict.refusal, verdict.detail));
-    } else if (command.order != Order::Heartbeat && command.order != Order::Leave) {
+    if (verdict.refusal == Refusal::None && command.order != Order::Heartbeat &&
+        command.order != Order::Leave) {
         parts_.rings.events.add(commandTaken(cycle, command));
     }
-    if (verdict.pending || command.ticket == 0) return;
+    if (!verdict.pending) answer(command, verdict, cycle);
+}
+
+void CommandDesk::answer(const ControlCommand& command, const Verdict& verdict,
+                         core::CycleNumber cycle) noexcept {
+    const bool refused = verdict.refusal != Refusal::None;
+    if (refused)
+        parts_.rings.events.add(commandRefused(cycle, command, verdict.refusal, verdict.detail));
+    if (command.ticket == 0) return;
     static_cast<void>(
         parts_.rings.answers.push({.ticket = command.ticket,
                                    .cycle = cycle,
@@ -96,6 +106,12 @@ Verdict CommandDesk::execute(const ControlCommand& command, core::CycleNumber cy
     if (!operating) return {.refusal = Refusal::NotOperating};
     if (command.order == Order::ResetStop) return resetStop();
     if (command.order == Order::ProgramStart) return startProgram(command);
+    if (command.order == Order::ProgramReset) {
+        if (command.target >= parts_.programs.size()) return {.refusal = Refusal::UnknownTarget};
+        if (parked_) return {.refusal = Refusal::Busy};
+        parked_ = command;
+        return {.pending = true};
+    }
     return commandAxis(command);
 }
 
@@ -132,6 +148,31 @@ Verdict CommandDesk::stopProgram(const ControlCommand& command) noexcept {
     if (program.ended()) return {.refusal = Refusal::ProgramEnded};
     program.hold(parts_.axes);
     return {};
+}
+
+/// A fresh instance takes the place of the program, which is then stopped before its first call.
+Verdict CommandDesk::resetProgram(const ControlCommand& command, bool operating) noexcept {
+    ProgramHost& program = parts_.programs[command.target];
+    ProgramHost* const fresh = parts_.stock.take(command.target);
+    if (fresh == nullptr) return {.refusal = Refusal::Busy};
+    std::uint16_t detail = 0;
+    const Refusal refusal = whyNoReset(program, operating, detail);
+    if (refusal == Refusal::None) program.exchange(*fresh, parts_.axes);
+    parts_.stock.retire(fresh);
+    return {.refusal = refusal, .detail = detail};
+}
+
+Refusal CommandDesk::whyNoReset(const ProgramHost& program, bool operating,
+                                std::uint16_t& detail) const noexcept {
+    if (!operating) return Refusal::NotOperating;
+    if (program.phase() == ProgramPhase::Abandoned) return Refusal::ProgramLost;
+    if (!program.atRest()) return Refusal::Busy;
+    for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
+        if (!program.uses(i) || !isMoving(parts_.axes[i])) continue;
+        detail = static_cast<std::uint16_t>(i);
+        return Refusal::AxisMoves;
+    }
+    return Refusal::None;
 }
 
 Verdict CommandDesk::resetStop() noexcept {

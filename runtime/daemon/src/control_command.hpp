@@ -24,10 +24,11 @@ enum class Order : std::uint8_t {
     ResetStop,
     ProgramStart,  ///< target: program
     ProgramStop,
+    ProgramReset,
     Upload,  ///< target: device; reads an object
     Download,
 };
-inline constexpr std::uint8_t OrderCount = 14;
+inline constexpr std::uint8_t OrderCount = 15;
 
 enum class OrderTarget : std::uint8_t { None, Axis, Program, Device };
 
@@ -70,6 +71,7 @@ enum class Refusal : std::uint8_t {
     OperatorMoves,  ///< an axis moves for the operator; `detail` is the axis
     ProgramsRun,    ///< writing might disturb them; `detail` is one of them
     AxisMoves,      ///< `detail` is the axis
+    ProgramLost,    ///< it was abandoned
     OfTheCycle,     ///< the object travels with the process data
     Replaying,      ///< a command file is being replayed
 };

@@ -75,14 +75,17 @@ void ControlServer::serve() {
     blockSignals();
     while (!ending_) {
         waitForClients();
+        takePrepared();
         takeAnswers();
         answerInquiries();
+        parts_.stock.clear();
         takeEvents();
         takeCommands();
         watchOwner();
         sendAll();
         dropGone();
     }
+    if (preparation_) preparation_->thread.join();
     takeAnswers();
     takeEvents();
     sendAll();
@@ -175,6 +178,8 @@ void ControlServer::order(std::uint64_t number, Client& client, const ControlReq
     ControlCommand command;
     if (std::string why = commandOf(request, command); !why.empty())
         return refuse(client, request, why);
+    if (command.order == Order::ProgramReset && preparation_)
+        return refuse(client, request, "busy: another program is being made ready");
     const bool isHeartbeat = command.order == Order::Heartbeat;
     // A heartbeat of somebody who does not operate means nothing; anybody may stop the machine, and
     // look at it.
@@ -189,6 +194,7 @@ void ControlServer::order(std::uint64_t number, Client& client, const ControlReq
         command.ticket = ++lastTicket_;
         tickets_[command.ticket] = {number, request.id, command.order, command.target};
     }
+    if (command.order == Order::ProgramReset) return prepareProgram(command);
     if (parts_.control.rings().commands.push(command) || isHeartbeat) return;
     tickets_.erase(command.ticket);
     refuse(client, request, "busy: the machine has not yet taken the commands before");
@@ -243,6 +249,32 @@ std::string ControlServer::claim(std::uint64_t number, const Client& client) {
     owner_ = number;
     ownerSeen_ = now;
     return {};
+}
+
+void ControlServer::prepareProgram(const ControlCommand& command) {
+    preparation_ = std::make_unique<Preparation>();
+    preparation_->command = command;
+    preparation_->thread = std::thread{[this, &work = *preparation_] {
+        work.problems = parts_.stock.prepare(work.command.target);
+        work.over.store(true, std::memory_order_release);
+    }};
+}
+
+void ControlServer::takePrepared() {
+    if (!preparation_ || !preparation_->over.load(std::memory_order_acquire)) return;
+    preparation_->thread.join();
+    const auto work = std::move(preparation_);
+    std::string why = fmt::format("{}", fmt::join(work->problems, "; "));
+    if (why.empty() && parts_.control.rings().commands.push(work->command)) return;
+    if (why.empty()) why = "busy: the machine has not yet taken the commands before";
+    const auto ticket = tickets_.find(work->command.ticket);
+    if (ticket == tickets_.end()) return;
+    const auto client = clients_.find(ticket->second.client);
+    if (client != clients_.end()) {
+        client->second.unsent += encode(ControlReply{
+            .id = ticket->second.request, .kind = ReplyKind::Refused, .error = std::move(why)});
+    }
+    tickets_.erase(ticket);
 }
 
 void ControlServer::inquire(std::uint64_t number, Client& client, const ControlRequest& request) {

@@ -35,7 +35,7 @@ public:
 
     struct Parts {
         const config::MachineConfig& machine;
-        std::span<const ProgramHost> programs;  ///< their lists of watches; not their state
+        ProgramStock& stock;
         MachineControl& control;
     };
     /// Opens the socket and begins to serve. \param commandFile taken commands are written there;
@@ -72,6 +72,13 @@ private:
         std::uint64_t request{0};
         std::uint32_t number{0};
     };
+    /// A fresh program that a thread of its own makes ready: its start may take its time.
+    struct Preparation {
+        ControlCommand command{};
+        std::thread thread;
+        std::vector<std::string> problems;
+        std::atomic<bool> over{false};
+    };
     using Time = std::chrono::steady_clock::time_point;
 
     void serve();
@@ -86,6 +93,8 @@ private:
                                        ControlCommand& command) const;
     [[nodiscard]] std::string claim(std::uint64_t number, const Client& client);
     void refuse(Client& client, const ControlRequest& request, std::string why);
+    void prepareProgram(const ControlCommand& command);
+    void takePrepared();
     void inquire(std::uint64_t number, Client& client, const ControlRequest& request);
     void answerInquiries();
     void takeAnswers();
@@ -108,6 +117,7 @@ private:
     std::uint64_t lastClient_{0};
     std::map<std::uint64_t, Ticket> tickets_;
     std::vector<Inquiry> inquiries_;
+    std::unique_ptr<Preparation> preparation_;
     std::uint64_t lastTicket_{0};
     std::uint64_t owner_{0};  ///< 0 = nobody
     Time ownerSeen_{};

@@ -35,6 +35,12 @@ std::string targetName(Order order, std::uint16_t target, const ControlNames& na
     return " " + nameIn(namesOf(targetOf(order), names), target);
 }
 
+std::string busyText(OrderTarget target) {
+    if (target == OrderTarget::Device) return "too many objects are asked for at once";
+    if (target == OrderTarget::Program) return "its last call, or its last reset, is not over yet";
+    return "the last command for this axis still runs";
+}
+
 axis::ErrorRecord errorOf(const record::Event& event) noexcept {
     const auto packed = static_cast<std::uint64_t>(event.numbers[0]);
     axis::ErrorRecord error;
@@ -153,9 +159,7 @@ std::string explain(Refusal refusal, Order order, std::uint16_t target, std::uin
                 "axis{} is held by program '{}'; do: stop the program, or run with --manual",
                 targetName(order, target, names), nameIn(names.programs, detail));
         case Refusal::Busy:
-            return targetOf(order) == OrderTarget::Device
-                       ? "too many objects are asked for at once"
-                       : "the last command for this axis still runs";
+            return busyText(targetOf(order));
         case Refusal::Block:
             return "the block refused it";
         case Refusal::StopActive:
@@ -176,6 +180,8 @@ std::string explain(Refusal refusal, Order order, std::uint16_t target, std::uin
                 nameIn(names.programs, detail));
         case Refusal::AxisMoves:
             return fmt::format("axis {} moves; do: stop it first", nameIn(names.axes, detail));
+        case Refusal::ProgramLost:
+            return "the program was abandoned, and its thread is lost; do: end the run";
         case Refusal::OfTheCycle:
             return "the cycle writes this object with the process data";
         case Refusal::Replaying:

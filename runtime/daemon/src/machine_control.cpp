@@ -62,9 +62,9 @@ MachineControl::MachineControl(const Parts& parts, std::vector<TakenCommand> rep
       board_{parts.axes.size(), parts.programs.size()},
       diagnosis_{parts.machine.network.slaves.size()},
       stop_{parts.machine.machineStop, parts.machine.network.cycle,
-            bindInputs(parts.machine, parts.master)},
+            bindInputs(parts.machine, parts.master), parts.axes.size()},
       bus_{{parts.machine.network, parts.machine.axes, parts.master, parts.axes, parts.programs}},
-      desk_{{parts.axes, parts.programs, stop_, bus_, rings_},
+      desk_{{parts.axes, parts.programs, stop_, bus_, parts.stock, rings_},
             parts.machine.network.cycle,
             std::move(replay),
             record} {
@@ -82,7 +82,7 @@ void MachineControl::beforePrograms(core::CycleNumber cycle, const CycleOrders& 
 void MachineControl::afterPrograms(core::CycleNumber cycle, const CycleOrders& orders) noexcept {
     takeWishes(cycle);
     if (stop_.onFault()) watchFaults(cycle);
-    desk_.cycle(cycle, orders.operating);
+    desk_.cycle(cycle, orders.operating, orders.allTold);
     stop_.act(cycle, parts_.axes);
     if (!orders.stopAxes) return;
     for (axis::Axis& axis : parts_.axes) axis.machineStop();
@@ -131,7 +131,8 @@ void MachineControl::publishStatus(core::CycleNumber cycle, const CycleOrders& o
     }
     for (std::size_t i = 0; i < parts_.programs.size(); ++i) {
         const ProgramHost& program = parts_.programs[i];
-        ProgramEntry entry{program.phase(), program.held(), program.endCycle(), {}};
+        ProgramEntry entry{
+            program.phase(), program.held(), program.instance(), program.endCycle(), {}};
         const auto& watched = program.watched();
         const std::size_t count =
             program.atRest() ? std::min(watched.size(), entry.watches.size()) : 0;

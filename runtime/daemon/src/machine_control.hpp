@@ -21,6 +21,7 @@ namespace takt::daemon {
 struct CycleOrders {
     bool runPrograms{false};
     bool operating{false};  ///< commands and stop inputs count
+    bool allTold{true};     ///< what was noted of programs has been put into words
     bool stopAxes{false};   ///< the run ends: every axis ramps down and is switched off
     RunPhase phase{RunPhase::GoingOp};
 };
@@ -33,6 +34,7 @@ public:
         fieldbus::ethercat::Master& master;
         Axes& axes;
         std::span<ProgramHost> programs;
+        ProgramStock& stock;
     };
     /// \param replay commands of a file, in the order of their cycles
     /// \param record what is taken goes into the ring for the command file

@@ -12,6 +12,7 @@ using fieldbus::ethercat::NetworkState;
 void MachineRun::oneCycle() noexcept {
     const scheduler::Beat beat = grid_.wait(bus_.clock());
     bus_.beginCycle(beat.number);
+    orders_.allTold = told_.load(std::memory_order_acquire) == noted_;
     cycle_.run(beat, orders_);
     now_ = beat.number + 1;
     const core::CycleGuard guard;
@@ -150,15 +151,19 @@ void MachineRun::fail(ExitCode code, RunNotice::Kind kind, std::size_t index) no
 }
 
 void MachineRun::note(RunNotice::Kind kind, std::size_t index, std::uint64_t number) noexcept {
-    notices_.push(
-        {.kind = kind, .index = index, .cycle = now_, .time = inPhase(), .number = number});
+    send({.kind = kind, .index = index, .cycle = now_, .time = inPhase(), .number = number});
+}
+
+void MachineRun::send(const RunNotice& notice) noexcept {
+    if (notices_.push(notice)) ++noted_;
 }
 
 void MachineRun::noteEndedPrograms() noexcept {
     for (std::size_t i = 0; i < programs_.size(); ++i) {
         const ProgramPhase phase = programs_[i].phase();
-        if (!programs_[i].ended() || noted_[i]) continue;
-        noted_[i] = true;
+        const bool known = endNoted_[i];
+        endNoted_[i] = programs_[i].ended();  // a program that was reset may end again
+        if (known || !endNoted_[i]) continue;
         note(RunNotice::Kind::ProgramEnded, i);
         if (phase == ProgramPhase::Finished || code_ != ExitCode::Good) continue;
         code_ =
@@ -168,11 +173,16 @@ void MachineRun::noteEndedPrograms() noexcept {
 
 void MachineRun::noteMachineStop() noexcept {
     const MachineStop& stop = control_.machineStop();
+    for (std::size_t i = 0; i < overdueNoted_.size(); ++i) {
+        if (stop.overdue(i) && !overdueNoted_[i])
+            fail(ExitCode::StopTimeout, RunNotice::Kind::MachineStopOverdue, i);
+        overdueNoted_[i] = stop.overdue(i);
+    }
     if (stop.active() == stopNoted_) return;
     stopNoted_ = stop.active();
     const auto kind =
         stopNoted_ ? RunNotice::Kind::MachineStopped : RunNotice::Kind::MachineStopReset;
-    notices_.push({.kind = kind, .cycle = now_, .stop = stop.record()});
+    send({.kind = kind, .cycle = now_, .stop = stop.record()});
 }
 
 core::Duration MachineRun::inPhase() const noexcept {

@@ -67,21 +67,28 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       console_{console},
       axes_{machine.axes},
       programs_{machine.programs},
-      noted_(programs_.size(), false),
+      endNoted_(programs_.size(), false),
+      overdueNoted_(axes_.size(), false),
       bus_{machine_, endFor(options, machine_), recorders.capture()},
       dcLock_{lockFor(options, machine_), machine_.network.cycle},
       grid_{core::HostTime{}, machine_.network.cycle},
       overruns_{machine_.scheduler.overruns},
-      control_{{machine_, bus_.master(), axes_, programs_},
+      stock_{programs_, machine.factories, axes_, machine_.network.cycle},
+      control_{{machine_, bus_.master(), axes_, programs_, stock_},
                machine.commands,
                !options.recordCommands.empty()},
-      server_{{machine_, programs_, control_}, options.socket, options.recordCommands},
+      server_{{machine_, stock_, control_}, options.socket, options.recordCommands},
       cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, control_, bus_.clock(),
               machine_.network.cycle}},
       pace_{!options.fast && options.interface.empty()},
       notices_{NoticeRoom},
       reporter_{machine_, programs_, bus_.master(), control_.names(), console} {
     attachAxes(machine_, bus_.master(), axes_);
+    for (const TakenCommand& taken : machine.commands) {
+        if (taken.command.order != Order::ProgramReset) continue;
+        for (const std::string& problem : stock_.prepare(taken.command.target))
+            throw std::runtime_error{fmt::format("{}: {}", options.commands.string(), problem)};
+    }
 }
 
 int MachineRun::execute() {
@@ -106,10 +113,12 @@ bool MachineRun::bringUp() {
             fmt::format("control socket {}, since another takt runs a machine of this name",
                         server_.path().string()));
     }
-    const auto problems = bus_.master().bringUp([this](std::string_view text) {
-        recorders_.drain();
-        console_.progress(text);
-    });
+    const auto problems = bus_.master().bringUp(
+        [this](std::string_view text) {
+            recorders_.drain();
+            console_.progress(text);
+        },
+        [this] { return stop_.count() == 0; });
     recorders_.drain();
     for (const auto& problem : problems) {
         console_.error(fmt::format(
@@ -195,7 +204,8 @@ void MachineRun::runOnThreads() {
 /// changes it.
 void MachineRun::keepHouse(bool cycleRests) {
     RunNotice notice;
-    while (notices_.pop(notice)) heldBack_.push_back(notice);
+    std::uint64_t taken = 0;
+    for (; notices_.pop(notice); ++taken) heldBack_.push_back(notice);
     std::erase_if(heldBack_, [this, cycleRests](const RunNotice& held) {
         const bool ofNetwork =
             held.kind == RunNotice::Kind::NetworkFailed || held.kind == RunNotice::Kind::OpTimedOut;
@@ -203,6 +213,7 @@ void MachineRun::keepHouse(bool cycleRests) {
         reporter_.tell(held);
         return true;
     });
+    told_.fetch_add(taken, std::memory_order_release);
     recorders_.drain();
     reporter_.progress(control_.board());
 }

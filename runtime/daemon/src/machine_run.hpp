@@ -68,6 +68,7 @@ private:
     void superviseLeavingOp() noexcept;
     void enter(Phase phase) noexcept;
     void fail(ExitCode code, RunNotice::Kind kind, std::size_t index = 0) noexcept;
+    void send(const RunNotice& notice) noexcept;
     void note(RunNotice::Kind kind, std::size_t index = 0, std::uint64_t number = 0) noexcept;
     void noteEndedPrograms() noexcept;
     void noteMachineStop() noexcept;
@@ -83,18 +84,22 @@ private:
     StopRequest stop_;
     Axes& axes_;
     std::vector<ProgramHost>& programs_;
-    std::vector<bool> noted_;  ///< programs whose end has been noted
+    std::vector<bool> endNoted_;      ///< programs whose end has been noted
+    std::vector<bool> overdueNoted_;  ///< axes that outlasted the present machine stop
     Bus bus_;
     scheduler::DcLock dcLock_;
     scheduler::Grid grid_;
     scheduler::OverrunGuard overruns_;
+    ProgramStock stock_;
     MachineControl control_;
     ControlServer server_;
     MachineCycle cycle_;
     Pace pace_;
     CycleOrders orders_;
     RunNotices notices_;
-    std::vector<RunNotice> heldBack_;  ///< until what they speak of rests
+    std::uint64_t noted_{0};              ///< notices sent
+    std::atomic<std::uint64_t> told_{0};  ///< … and put into words, or held back
+    std::vector<RunNotice> heldBack_;     ///< until what they speak of rests
     RunReporter reporter_;
     Phase phase_{Phase::BringUp};
     core::CycleNumber phaseBegan_{0};

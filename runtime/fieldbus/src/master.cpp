@@ -165,7 +165,8 @@ Master::Master(const NetworkParams& network, wire::Link& link, core::ClockSource
 
 Master::~Master() = default;
 
-std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string_view)>& progress) {
+std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string_view)>& progress,
+                                            const std::function<bool()>& goOn) {
     Parts& parts = *parts_;
     parts.walk.off();
     parts.prepared = false;
@@ -174,7 +175,8 @@ std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string
     BringUp bringUp{{parts.network, parts.layout, parts.slice, parts.machines, parts.agents,
                      parts.scripts, parts.reference},
                     talk,
-                    progress};
+                    progress,
+                    goOn};
     std::vector<BringUpProblem> problems = bringUp.run();
     if (!problems.empty()) return problems;
     parts.walk.begin(bringUp.referenceSlave());

@@ -50,7 +50,10 @@ public:
     /// data mapped, clocks settled and SYNC0 armed; may be called again after a failure. `progress`
     /// gets lines for people and may be empty. \return all problems; empty = ready for the cyclic
     /// phase
-    std::vector<BringUpProblem> bringUp(const std::function<void(std::string_view)>& progress);
+    /// \param goOn asked again and again; false: all devices are led to INIT, and that is the
+    /// problem. May be empty
+    std::vector<BringUpProblem> bringUp(const std::function<void(std::string_view)>& progress,
+                                        const std::function<bool()>& goOn = {});
 
     /// The first host time at or after `notBefore` at which a frame that is sent then passes the
     /// reference clock just sync0AfterSend before a SYNC0. \pre bringUp() succeeded
