@@ -6,6 +6,7 @@
 #include <takt/daemon/control_socket.hpp>
 
 #include "machine_files.hpp"
+#include "rate_limit.hpp"
 #include "running_takt.hpp"
 
 namespace takt::test {
@@ -27,6 +28,7 @@ protected:
             std::vector<std::string>{"run", Gantry, "--sim", "--manual"});
         SocketClient watcher{machine_->socket()};
         while (watcher.status().at("phase") != "operating") {
+            SocketClient::pause();
         }
     }
     void TearDown() override {
@@ -53,6 +55,7 @@ TEST_F(LiveMachine, ShowsTheSameToTwoWatchers) {
     EXPECT_EQ(a.at("axes")[2].at("name"), b.at("axes")[2].at("name"));
     EXPECT_LE(a.at("cycle"), b.at("cycle"));
     while (first.status().at("cycle") == b.at("cycle")) {
+        SocketClient::pause();
     }
     EXPECT_EQ(b.at("owner"), "") << "who only looks owns nothing";
 }
@@ -77,12 +80,23 @@ TEST_F(LiveMachine, IsTakenOverWhenItsOwnerHasGone) {
     owner.reset();
     Json reply = heir.ask({{"do", "power-on"}, {"axis", "Y"}});
     while (reply.at("is") == "refused") {
+        SocketClient::pause();
         EXPECT_THAT(reply.at("error").get<std::string>(),
                     AnyOf(HasSubstr("operated by"), HasSubstr("has just left")));
         reply = heir.ask({{"do", "power-on"}, {"axis", "Y"}});
     }
     EXPECT_EQ(reply.at("is"), "done");
     EXPECT_EQ(heir.axis("X").at("powered"), true) << "leaving switches nothing off";
+}
+
+TEST_F(LiveMachine, IsFreeWhenItsOwnerLeavesAndNobodyElseCanLeaveForHim) {
+    SocketClient owner{socket()};
+    SocketClient other{socket()};
+    EXPECT_EQ(owner.ask({{"do", "power-on"}, {"axis", "X"}}).at("is"), "done");
+    EXPECT_EQ(other.ask({{"do", "leave"}}).at("error"), "this client does not operate the machine");
+    EXPECT_EQ(owner.ask({{"do", "leave"}}).at("is"), "done");
+    EXPECT_EQ(other.status().at("owner"), "");
+    EXPECT_EQ(other.ask({{"do", "power-on"}, {"axis", "Y"}}).at("is"), "done");
 }
 
 TEST_F(LiveMachine, StopsTheAxisWhoseOwnerDisconnects) {
@@ -113,6 +127,7 @@ TEST_F(LiveMachine, TakesNoSignOfLifeFromSomebodyElse) {
     sendOnALongWay(owner);
     other.awaitState("X", "DiscreteMotion");
     while (other.axis("X").at("state") != "Standstill") {
+        SocketClient::pause();
         other.send({{"do", "heartbeat"}});
         EXPECT_NE(other.ask({{"do", "upload"}, {"device", "x"}, {"object", "0x6064:0"}}).at("is"),
                   "refused");
@@ -191,6 +206,7 @@ TEST_F(LiveMachine, TellsEventsInOrderAndOnlyTheNewOnes) {
     std::vector<std::string> texts;
     int number = last;
     while (texts.empty() || texts.back() != "axis Z Disabled -> Standstill") {
+        SocketClient::pause();
         const Json reply = client.ask({{"do", "events"}, {"after", number}});
         for (const Json& event : reply.at("events")) {
             EXPECT_EQ(event.at("number"), ++number);
@@ -206,6 +222,67 @@ TEST_F(LiveMachine, EndsConnectionsInOrder) {
     machine_->terminate();
     EXPECT_TRUE(client.receive().is_null());
     EXPECT_THROW(SocketClient{socket()}, std::runtime_error) << "the socket is gone";
+}
+
+TEST_F(LiveMachine, RefusesTheRequestsOfAClientThatFloodsItButNotItsStop) {
+    SocketClient flood{socket()};
+    SocketClient other{socket()};
+    constexpr int many = 4000;
+    std::string lines;
+    for (int i = 0; i < many; ++i) lines += "{\"id\":1,\"do\":\"heartbeats\"}\n";
+    flood.sendRaw(lines);
+    int tooMany = 0;
+    for (int i = 0; i < many; ++i) {
+        const Json reply = flood.receive();
+        ASSERT_EQ(reply.at("is"), "refused");
+        if (reply.at("error") == "too many requests; allowed: 500 in a second") ++tooMany;
+    }
+    EXPECT_GT(tooMany, 0);
+    EXPECT_EQ(flood.ask({{"do", "stop"}}).at("is"), "done");
+    EXPECT_EQ(other.status().at("machineStop"), "operator");
+}
+
+TEST(Rate, LetsThroughSoManyInASecondAndAsManyAtOnceAfterAPause) {
+    using namespace std::chrono_literals;
+    daemon::RateLimit::Time now{};
+    daemon::RateLimit limit{10, now};
+    for (int i = 0; i < 10; ++i) EXPECT_TRUE(limit.take(now)) << i;
+    EXPECT_FALSE(limit.take(now));
+    EXPECT_FALSE(limit.take(now += 99ms));
+    EXPECT_TRUE(limit.take(now += 1ms));
+    EXPECT_FALSE(limit.take(now));
+    now += 1h;
+    int passed = 0;
+    while (limit.take(now)) ++passed;
+    EXPECT_EQ(passed, 10) << "a long pause is not saved up";
+}
+
+TEST(ProgramReset, IsRefusedWhileAnAxisMovesAndGivesAFreshProgramOtherwise) {
+    RunningTakt machine{"live_reset", {"run", Gantry, "--sim", "--program", programPath("counts")}};
+    SocketClient watcher{machine.socket()};
+    const auto program = [&watcher] { return watcher.status().at("programs").at(0); };
+    while (program().at("watches").at("calls") < 50.0) {
+        SocketClient::pause();
+    }
+    watcher.awaitState("X", "DiscreteMotion");
+    const auto refused = machine.tell({"program", "reset", "counts"});
+    EXPECT_EQ(refused.exitCode, 1);
+    EXPECT_THAT(refused.output, HasSubstr("axis X moves; do: stop it first"));
+    EXPECT_EQ(program().at("state"), "running");
+
+    EXPECT_EQ(machine.tell({"program", "stop", "counts"}).exitCode, 0);
+    watcher.awaitState("X", "Standstill");
+    const auto reset = machine.tell({"program", "reset", "counts"});
+    EXPECT_EQ(reset.exitCode, 0) << reset.output;
+    while (program().at("watches").at("calls") != 0.0) {
+        SocketClient::pause();
+    }
+    EXPECT_EQ(program().at("state"), "stopped");
+    EXPECT_EQ(program().at("watches").at("instance"), 3.0) << "the second one was refused";
+    EXPECT_EQ(machine.tell({"program", "start", "counts"}).exitCode, 0);
+    watcher.awaitState("X", "DiscreteMotion");
+    const auto result = machine.terminate();
+    EXPECT_THAT(result.output, Not(HasSubstr("ErrorStop")));
 }
 
 TEST(Peers, AreThisUserRootAndMembersOfItsGroup) {

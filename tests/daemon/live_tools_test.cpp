@@ -15,6 +15,7 @@ using Json = SocketClient::Json;
 void awaitOperation(const RunningTakt& machine) {
     SocketClient watcher{machine.socket()};
     while (watcher.status().at("phase") != "operating") {
+        SocketClient::pause();
     }
 }
 
@@ -95,6 +96,7 @@ TEST(LiveTools, NameTheDatagramWhoseRepliesWereLost) {
                         {"run", Gantry, "--sim", "--manual", "--faults", folder + "/faults.xml"}};
     SocketClient watcher{machine.socket()};
     while (watcher.status().at("cycle") < 310) {
+        SocketClient::pause();
     }
     EXPECT_THAT(machine.tell({"diag"}).output,
                 HasSubstr("no reply in 2 cycles; the same datagram serves x, z"));

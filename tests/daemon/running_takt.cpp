@@ -103,6 +103,11 @@ SocketClient::~SocketClient() {
     close();
 }
 
+void SocketClient::pause() {
+    constexpr int milliseconds = 10;
+    ::poll(nullptr, 0, milliseconds);
+}
+
 void SocketClient::close() {
     if (socket_ >= 0) ::close(socket_);
     socket_ = -1;
@@ -167,7 +172,7 @@ SocketClient::Json SocketClient::awaitState(const std::string& name, const std::
     for (;;) {
         Json found = axis(name);
         if (found.at("state") == state) return found;
-        ::poll(nullptr, 0, 2);
+        pause();
     }
 }
 

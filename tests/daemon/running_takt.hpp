@@ -70,6 +70,8 @@ public:
     /// All texts of events so far.
     [[nodiscard]] std::vector<std::string> events();
     void close();
+    /// Between two questions of the same kind, so that the machine does not take it for a flood.
+    static void pause();
 
 private:
     int socket_{-1};

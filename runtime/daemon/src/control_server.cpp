@@ -155,6 +155,13 @@ void ControlServer::handle(std::uint64_t number, Client& client, std::string_vie
     const auto request = parseRequest(line, error);
     if (!request) return refuse(client, {}, std::move(error));
     if (!request->who.empty()) client.who = request->who.substr(0, 32);
+    const bool stops = request->verb == name(Order::MachineStop) ||
+                       request->verb == name(Order::Halt) || request->verb == name(Order::Leave);
+    if (!client.rate.take(std::chrono::steady_clock::now()) && !stops) {
+        return refuse(
+            client, *request,
+            fmt::format("too many requests; allowed: {:.0f} in a second", MostRequestsPerSecond));
+    }
     ControlReply reply{.id = request->id};
     if (request->verb == "status") {
         reply.status = report();
@@ -184,6 +191,9 @@ void ControlServer::order(std::uint64_t number, Client& client, const ControlReq
     // A heartbeat of somebody who does not operate means nothing; anybody may stop the machine, and
     // look at it.
     if (isHeartbeat && owner_ != number) return;
+    const bool leaves = command.order == Order::Leave;
+    if (leaves && owner_ != number)
+        return refuse(client, request, "this client does not operate the machine");
     if (command.order != Order::MachineStop && command.order != Order::Upload) {
         if (std::string why = claim(number, client); !why.empty())
             return refuse(client, request, why);
@@ -195,7 +205,10 @@ void ControlServer::order(std::uint64_t number, Client& client, const ControlReq
         tickets_[command.ticket] = {number, request.id, command.order, command.target};
     }
     if (command.order == Order::ProgramReset) return prepareProgram(command);
-    if (parts_.control.rings().commands.push(command) || isHeartbeat) return;
+    if (parts_.control.rings().commands.push(command) || isHeartbeat) {
+        if (leaves) owner_ = 0;
+        return;
+    }
     tickets_.erase(command.ticket);
     refuse(client, request, "busy: the machine has not yet taken the commands before");
 }

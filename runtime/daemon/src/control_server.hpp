@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "machine_control.hpp"
+#include "rate_limit.hpp"
 
 namespace takt::daemon {
 
@@ -32,6 +33,8 @@ public:
     static constexpr std::size_t MostUnsent =
         1U << 20U;  ///< then a client that does not read is dropped
     static constexpr std::size_t KeptEvents = 2000;
+    /// Of one client; then its requests are refused, but never a stop.
+    static constexpr double MostRequestsPerSecond = 500;
 
     struct Parts {
         const config::MachineConfig& machine;
@@ -59,6 +62,7 @@ private:
         std::string received;
         std::string unsent;
         bool gone{false};
+        RateLimit rate{MostRequestsPerSecond, std::chrono::steady_clock::now()};
     };
     struct Ticket {
         std::uint64_t client{0};
