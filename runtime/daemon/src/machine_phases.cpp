@@ -147,7 +147,8 @@ void MachineRun::enter(Phase phase) noexcept {
 
 void MachineRun::fail(ExitCode code, RunNotice::Kind kind, std::size_t index) noexcept {
     note(kind, index, overruns_.inRow());
-    if (code_ == ExitCode::Good) code_ = code;
+    // What does not stop is worse than all else.
+    if (code_ == ExitCode::Good || code == ExitCode::StopTimeout) code_ = code;
 }
 
 void MachineRun::note(RunNotice::Kind kind, std::size_t index, std::uint64_t number) noexcept {
