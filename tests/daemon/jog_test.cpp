@@ -71,6 +71,11 @@ public:
         }
         shown_.erase(0, shown_.find(text) + text.size());
     }
+    /// The step of the key before has begun and has ended.
+    void awaitStep() {
+        awaitText("under way");
+        awaitText("mm/s  \r");
+    }
     void freeze() const { ::kill(child_, SIGSTOP); }
     /// \return its exit code
     int end() {
@@ -141,8 +146,10 @@ constexpr double Start = 120.0;
 TEST_F(JogTerminal, MovesOneStepForEachKey) {
     Jogger jog{*machine_, "2", "100"};
     jog.press("\033[C");
+    jog.awaitStep();
     awaitRestAt(Start + 2.0);
     jog.press("-");
+    jog.awaitStep();
     awaitRestAt(Start);
     jog.press("q");
     EXPECT_EQ(jog.end(), 0);
