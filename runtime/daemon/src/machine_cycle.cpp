@@ -50,7 +50,7 @@ void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {
     parts_.grid.shift(parts_.dcLock.update(error));
     parts_.master.setClockLocked(parts_.dcLock.locked());
     if (parts_.dcLock.locked()) {
-        worstPhaseError_ = std::max(worstPhaseError_, std::chrono::abs(error));
+        statistics_.phaseError.add(std::chrono::abs(error).count());
     }
 }
 

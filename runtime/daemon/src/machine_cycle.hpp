@@ -34,7 +34,6 @@ public:
     /// rt. The whole cycle of one wake-up.
     void run(const scheduler::Beat& beat, const CycleOrders& orders) noexcept;
 
-    [[nodiscard]] core::Duration worstPhaseError() const noexcept { return worstPhaseError_; }
     [[nodiscard]] const CycleStatistics& statistics() const noexcept { return statistics_; }
 
 private:
@@ -46,7 +45,6 @@ private:
     Parts parts_;
     CycleStatistics statistics_;
     CyclePart longest_{CyclePart::Host};  ///< what made the last cycle too long; Host: it was not
-    core::Duration worstPhaseError_{0};   ///< while locked
 };
 
 }  // namespace takt::daemon

@@ -119,6 +119,17 @@ void ProgramHost::hold(Axes& axes) noexcept {
     stopAxes(axes);
 }
 
+void ProgramHost::exchange(ProgramHost& fresh, Axes& axes) noexcept {
+    stopAxes(axes);
+    std::swap(work_, fresh.work_);
+    std::swap(inspector_, fresh.inspector_);
+    std::swap(commanded_, fresh.commanded_);
+    std::swap(instance_, fresh.instance_);
+    phase_ = ProgramPhase::Waiting;
+    held_ = true;
+    endCycle_ = 0;
+}
+
 void ProgramHost::end(ProgramPhase phase, core::CycleNumber cycle) noexcept {
     phase_ = phase;
     endCycle_ = cycle;

@@ -214,7 +214,7 @@ bool SegmentTool::Parts::startMailbox(std::size_t position) {
 core::ObjectReply SegmentTool::Parts::await(std::size_t position) {
     Node& node = *nodes[position];
     run(node);
-    return node.agent.reply();
+    return node.agent.objects(ObjectUser::Operator).reply();
 }
 
 core::ObjectReply SegmentTool::Parts::ask(std::size_t position,
@@ -268,7 +268,8 @@ bool SegmentTool::toState(std::size_t position, wire::AlState target) {
 }
 
 core::ObjectReply SegmentTool::upload(std::size_t position, core::ObjectAddress address) {
-    if (!parts_->startMailbox(position) || !parts_->nodes[position]->agent.startRead(address)) {
+    core::ObjectAccess& objects = parts_->nodes[position]->agent.objects(ObjectUser::Operator);
+    if (!parts_->startMailbox(position) || !objects.startRead(address)) {
         return {core::ObjectState::Failed, {}, wire::abortcode::WrongDeviceState};
     }
     return parts_->await(position);
@@ -276,8 +277,8 @@ core::ObjectReply SegmentTool::upload(std::size_t position, core::ObjectAddress 
 
 core::ObjectReply SegmentTool::download(std::size_t position, core::ObjectAddress address,
                                         const core::ObjectValue& value) {
-    if (!parts_->startMailbox(position) ||
-        !parts_->nodes[position]->agent.startWrite(address, value)) {
+    core::ObjectAccess& objects = parts_->nodes[position]->agent.objects(ObjectUser::Operator);
+    if (!parts_->startMailbox(position) || !objects.startWrite(address, value)) {
         return {core::ObjectState::Failed, {}, wire::abortcode::WrongDeviceState};
     }
     return parts_->await(position);

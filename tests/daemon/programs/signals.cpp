@@ -1,7 +1,7 @@
 /// Moves X and raises signals in a phase of the motion that the environment names, so that a test
-/// hits it to the cycle: TAKT_TEST_PHASE = enable, homing, acceleration, constant, deceleration or
-/// standstill; TAKT_TEST_SIGNAL = number (2 when absent); TAKT_TEST_COUNT = how many at once (1
-/// when absent).
+/// hits it to the cycle: TAKT_TEST_PHASE = enable, homing, acceleration, constant, deceleration,
+/// standstill or never; TAKT_TEST_SIGNAL = number (2 when absent); TAKT_TEST_COUNT = how many at
+/// once (1 when absent).
 #include <signal.h>
 #include <unistd.h>
 
@@ -50,6 +50,7 @@ private:
         const double v = view.setVelocity.count();
         const bool braking = v < last_;
         last_ = v;
+        if (phase_ == "never") return false;
         if (phase_ == "enable") return machine.cycle() == 5;
         if (phase_ == "homing") return home_.Active && ++homing_ == 300;
         if (phase_ == "acceleration") return v > 100.0;
