@@ -116,6 +116,7 @@ void BringUp::settleClocks() {
     std::size_t quiet = 0;
     std::uint32_t sent = 0;
     for (; sent < parts_.network.dcDriftFrames && quiet < quietFrames * rounds; ++sent) {
+        if (brokenOff()) return;
         frames.begin();
         frames.openFrame();
         parts_.reference.append(frames);
