@@ -3,6 +3,7 @@
 #include <string>
 #include <takt/axis/axis_params.hpp>
 #include <takt/axis/machine_stop_params.hpp>
+#include <takt/bridge/bridge_params.hpp>
 #include <takt/fieldbus/fieldbus_params.hpp>
 #include <takt/program/program_params.hpp>
 #include <takt/scheduler/scheduler_params.hpp>
@@ -21,6 +22,7 @@ struct MachineConfig {
     std::vector<axis::AxisParams> axes;
     std::vector<program::ProgramParams> programs;
     axis::MachineStopParams machineStop;  ///< inputs name slaves and mapped entries that exist
+    bridge::BridgeParams bridge;
     twin::TwinParams twin;  ///< one device for each slave, defaults where <Twin> is silent
 };
 
