@@ -74,13 +74,19 @@ void Publisher::publishReplies() {
 
 void Publisher::handOver() {
     for (const CommandRecord& command : node_.takeCommands()) {
-        if (commands_.send(command)) continue;
-        ReplyRecord refused{.client = command.client,
-                            .request = command.request,
-                            .kind = ReplyKind::Refused};
-        put(refused.why, "busy: the machine has not yet taken the commands before");
-        static_cast<void>(node_.publish(refused));
+        if (!isWellFormed(command)) {
+            refuse(command, "a number is not finite, or a text is not printable");
+        } else if (!commands_.send(command)) {
+            refuse(command, "busy: the machine has not yet taken the commands before");
+        }
     }
+}
+
+void Publisher::refuse(const CommandRecord& command, std::string_view why) {
+    ReplyRecord refused{
+        .client = command.client, .request = command.request, .kind = ReplyKind::Refused};
+    put(refused.why, why);
+    static_cast<void>(node_.publish(refused));
 }
 
 }  // namespace takt::bridge

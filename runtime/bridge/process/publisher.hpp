@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <takt/bridge/command_memory.hpp>
 #include <takt/bridge/status_memory.hpp>
 
@@ -28,6 +29,7 @@ private:
     void publishEvents();
     void publishReplies();
     void handOver();
+    void refuse(const CommandRecord& command, std::string_view why);
 
     StatusReader& status_;
     CommandSender& commands_;
