@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <limits>
+#include <thread>
 
 #include "dds_client.hpp"
 #include "running_takt.hpp"
@@ -31,9 +32,20 @@ protected:
         ASSERT_TRUE(waitFor(
             [this] {
                 client.listen();
-                return client.operating() && client.mayCommand();
+                return client.operating() && client.axes().size() == 16 && client.mayCommand();
             },
             StartTime));
+    }
+    /// On a busy computer this process may be silent for 100 ms, which stops the axis: then it goes
+    /// on from there.
+    bool moveTo(const std::string& axis, double target) {
+        constexpr int tries = 20;
+        for (int i = 0; i < tries; ++i) {
+            const double distance = target - client.axes().at(axis).actual;
+            const auto end = client.answer(client.send("inch", axis, distance, 50.0), true);
+            if (end && end->kind == "done") return true;
+        }
+        return false;
     }
     /// Ends the run as a user does.
     ProcessResult interrupt() {
@@ -51,9 +63,7 @@ TEST_F(CommandedOverDds, AnAxisMovesAndTheCommandsAreRecordedWithTheirCycles) {
     const auto power = client.answer(client.send("power-on", "S03"), true);
     ASSERT_TRUE(power.has_value());
     EXPECT_EQ(power->kind, "done") << power->why;
-    const auto inch = client.answer(client.send("inch", "S03", 3.0, 50.0), true);
-    ASSERT_TRUE(inch.has_value());
-    EXPECT_EQ(inch->kind, "done") << inch->why;
+    ASSERT_TRUE(moveTo("S03", 3.0));
     EXPECT_TRUE(waitFor(
         [this] {
             client.listen();
@@ -91,18 +101,19 @@ TEST_F(CommandedOverDds, TheMachineHasOneOwnerOverBothDoors) {
             return other.mayCommand();
         },
         StartTime));
-    client.send("reset", "S01");
-    const auto refused = other.answer(other.send("power-on", "S02"), false);
-    ASSERT_TRUE(refused.has_value());
-    EXPECT_EQ(refused->kind, "refused");
-    EXPECT_THAT(refused->why, HasSubstr("operated by client 1 (DDS)"));
-
-    client.send("reset", "S01");
-    const auto socket =
-        runTakt({"power", "on", "S02", "--socket", machine.socket}, folder);
-    EXPECT_NE(socket.exitCode, 0);
-    EXPECT_THAT(socket.output, HasSubstr("operated by client 1 (DDS)"));
-
+    {
+        // The owner is there all the while.
+        std::jthread owner{[this](const std::stop_token& end) {
+            for (; !end.stop_requested(); pauseFor(0.02)) client.send("reset", "S01");
+        }};
+        const auto refused = other.answer(other.send("power-on", "S02"), false);
+        ASSERT_TRUE(refused.has_value());
+        EXPECT_EQ(refused->kind, "refused");
+        EXPECT_THAT(refused->why, HasSubstr("operated by client 1 (DDS)"));
+        const auto socket = runTakt({"power", "on", "S02", "--socket", machine.socket}, folder);
+        EXPECT_NE(socket.exitCode, 0);
+        EXPECT_THAT(socket.output, HasSubstr("operated by client 1 (DDS)"));
+    }
     client.send("leave");
     const auto taken = other.answer(other.send("power-on", "S02"), true);
     ASSERT_TRUE(taken.has_value());
@@ -127,9 +138,10 @@ TEST_F(CommandedOverDds, ARefusedCommandSaysWhy) {
 
 TEST_F(CommandedOverDds, TheAxisStopsWhenTheBridgeIsGone) {
     ASSERT_EQ(client.answer(client.send("power-on", "S04"), true)->kind, "done");
-    client.send("inch", "S04", 100.0, 20.0);
     ASSERT_TRUE(waitFor(
         [this] {
+            if (client.axes().at("S04").state == "Standstill")
+                client.send("inch", "S04", 100.0, 20.0);
             client.send("heartbeat");
             client.listen();
             return client.axes().at("S04").state == "DiscreteMotion";
