@@ -25,8 +25,7 @@ double hertz(double cycles, core::Duration cycle) {
 std::optional<std::uint32_t> cyclesOf(const Quantity& rate, core::Duration cycle,
                                       const ElementReader& reader) {
     const auto cycleRatio = makeRatio(cycle.count(), static_cast<std::int64_t>(Second));
-    const auto ratio =
-        rate.exact && cycleRatio ? multiply(*rate.exact, *cycleRatio) : std::nullopt;
+    const auto ratio = rate.exact && cycleRatio ? multiply(*rate.exact, *cycleRatio) : std::nullopt;
     const double cycles = Second / (rate.value * static_cast<double>(cycle.count()));
     if (ratio && ratio->numerator == 1 && ratio->denominator <= MostCycles) {
         return static_cast<std::uint32_t>(ratio->denominator);
@@ -34,8 +33,8 @@ std::optional<std::uint32_t> cyclesOf(const Quantity& rate, core::Duration cycle
     const double below = std::clamp(static_cast<double>(static_cast<std::int64_t>(cycles)), 1.0,
                                     static_cast<double>(MostCycles));
     reader.error("rate", "status is published in every n-th cycle, which this rate does not give",
-                 fmt::format("{:g} Hz, {:g} Hz and others that divide {:g} Hz",
-                             hertz(below, cycle), hertz(below + 1, cycle), hertz(1, cycle)));
+                 fmt::format("{:g} Hz, {:g} Hz and others that divide {:g} Hz", hertz(below, cycle),
+                             hertz(below + 1, cycle), hertz(1, cycle)));
     return std::nullopt;
 }
 
@@ -54,8 +53,7 @@ bridge::DdsParams readDds(ElementReader reader, core::Duration cycle) {
         reader.choice<bool>("commands", {{"off", false}, {"on", true}}).value_or(dds.commands);
     reader.finish();
     if (dds.interface.size() > LongestInterface) {
-        reader.error("interface", "no network interface has so long a name",
-                     "up to 15 characters");
+        reader.error("interface", "no network interface has so long a name", "up to 15 characters");
     }
     if (dds.commands && dds.interface != "lo") {
         reader.error("commands", "whoever reaches this interface could move the axes",

@@ -10,11 +10,11 @@ namespace {
 using takt::ProgramState;
 
 constexpr std::size_t Stations = 16;
-constexpr int Strokes = 4;                         ///< of each station, forth and back
-constexpr double Delay = 0.08;                     ///< s, from one station to the next
-constexpr double Period = Stations * Delay;        ///< s, from one wave to the next
-constexpr double Far = 120.0;                      ///< mm
-constexpr double Velocity = 250.0;                 ///< mm/s
+constexpr int Strokes = 4;                          ///< of each station, forth and back
+constexpr double Delay = 0.08;                      ///< s, from one station to the next
+constexpr double Period = Stations * Delay;         ///< s, from one wave to the next
+constexpr double Far = 120.0;                       ///< mm
+constexpr double Velocity = 250.0;                  ///< mm/s
 constexpr std::array<double, 2> Targets{Far, 0.0};  ///< of one stroke
 
 /// One station: powered, then a stroke whenever the wave comes by.

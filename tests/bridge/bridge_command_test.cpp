@@ -77,10 +77,9 @@ TEST_F(CommandedOverDds, AnAxisMovesAndTheCommandsAreRecordedWithTheirCycles) {
     const std::string taken = readFile(folder + "/taken.txt");
     EXPECT_THAT(taken, HasSubstr(" power-on S03\n"));
     EXPECT_THAT(taken, HasSubstr(" inch S03 3 50\n"));
-    const auto replayed =
-        runTakt({"run", machine.file, "--fast", "--manual", "--for", "2s", "--commands",
-                 "taken.txt", "--trace", "replayed.csv"},
-                folder);
+    const auto replayed = runTakt({"run", machine.file, "--fast", "--manual", "--for", "2s",
+                                   "--commands", "taken.txt", "--trace", "replayed.csv"},
+                                  folder);
     EXPECT_EQ(replayed.exitCode, 0) << replayed.output;
     const std::string live = readFile(folder + "/t.csv");
     const std::string again = readFile(folder + "/replayed.csv");

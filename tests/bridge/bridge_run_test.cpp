@@ -26,8 +26,8 @@ const std::string Wave = std::string{TAKT_BINARY_DIR} + "/test_programs/endless_
 
 std::vector<std::string> arguments(const OwnMachine& machine, const std::string& length,
                                    const std::vector<std::string>& more) {
-    std::vector<std::string> words{"run",     machine.file,     "--for", length,   "--socket",
-                                   machine.socket, "--trace", "t.csv"};
+    std::vector<std::string> words{"run",      machine.file,   "--for",   length,
+                                   "--socket", machine.socket, "--trace", "t.csv"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
 }
@@ -90,11 +90,10 @@ TEST(Bridge, GivesASubscriberEverySampleOfSixteenAxes) {
     const OwnMachine machine = ownMachine(folder, "rate=\"100 Hz\"");
     RunningTakt takt{arguments(machine, "11s", {"--sim", "--program", Wave}), folder};
     // Cycles are the clock of both: 10 s are 10000 of them, however long they take here.
-    const auto subscriber = runCommand(
-        {"sh", "-c",
-         "timeout 60 " TAKT_BINARY_DIR "/dds_subscriber " + std::to_string(machine.domain) +
-             " 10 > samples.csv"},
-        folder);
+    const auto subscriber = runCommand({"sh", "-c",
+                                        "timeout 60 " TAKT_BINARY_DIR "/dds_subscriber " +
+                                            std::to_string(machine.domain) + " 10 > samples.csv"},
+                                       folder);
     EXPECT_EQ(subscriber.exitCode, 0) << subscriber.output;
     EXPECT_THAT(subscriber.output, HasSubstr("axis S16 Disabled -> Standstill"));
     const ProcessResult result = takt.finish();

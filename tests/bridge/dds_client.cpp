@@ -23,8 +23,8 @@ constexpr const char* Loopback = R"(<CycloneDDS><Domain id="any">
   <MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
   <Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain></CycloneDDS>)";
 
-constexpr std::array<const char*, 10> Orders{"heartbeat", "leave", "power-on", "power-off",
-                                             "reset",     "home",  "inch",     "halt",
+constexpr std::array<const char*, 10> Orders{"heartbeat", "leave",     "power-on", "power-off",
+                                             "reset",     "home",      "inch",     "halt",
                                              "stop",      "reset-stop"};
 constexpr std::array<const char*, 5> Kinds{"accepted", "refused", "done", "aborted", "failed"};
 constexpr std::array<const char*, 8> States{

@@ -207,8 +207,7 @@ TEST(CommandMemory, PassesOverRecordsThatAreOutOfRange) {
 
 TEST(CommandMemory, SurvivesAnyBytesInIt) {
     CommandReceiver receiver;
-    SharedMemory hostile =
-        SharedMemory::attach(receiver.descriptor(), SharedMemory::Others::Write);
+    SharedMemory hostile = SharedMemory::attach(receiver.descriptor(), SharedMemory::Others::Write);
     CommandLayout& layout = layoutOf(hostile);
     std::uint64_t random = 88172645463325252U;
     const auto next = [&random] {

@@ -32,8 +32,8 @@ template <typename T>
 struct Memory {
     explicit Memory(std::size_t depth)
         : bytes{static_cast<std::byte*>(
-              ::operator new(RingLayout<T>::bytes(depth), std::align_val_t{64}))} {}
-    ~Memory() { ::operator delete(bytes, std::align_val_t{64}); }
+              ::operator new (RingLayout<T>::bytes(depth), std::align_val_t{64}))} {}
+    ~Memory() { ::operator delete (bytes, std::align_val_t{64}); }
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
     std::byte* bytes;

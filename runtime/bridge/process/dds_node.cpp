@@ -118,8 +118,8 @@ void DdsNode::createStatusWriters() {
 
 void DdsNode::createEventWriter() {
     const char* const name = "takt/Event";
-    const Entity topic = create(
-        dds_create_topic(participant_, &takt_dds_Event_desc, name, nullptr, nullptr), name);
+    const Entity topic =
+        create(dds_create_topic(participant_, &takt_dds_Event_desc, name, nullptr, nullptr), name);
     const Qos qos = reliable(EventDepth);
     dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
     dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, EventDepth,
@@ -181,7 +181,8 @@ void DdsNode::publishAxis(std::size_t index, const AxisSample& sample) {
     status.drive_error = sample.driveError;
     status.controlword = sample.controlword;
     status.statusword = sample.statusword;
-    status.mode = sample.mode;
+    status.mode =
+        static_cast<std::int16_t>(sample.mode);  // NOLINT(bugprone-signed-char-misuse): a number
     dds_write(axisWriter_, &status);
 }
 

@@ -40,7 +40,8 @@ template <typename T>
 std::vector<RingReader<T>> readRings(const std::byte* at, std::size_t count, std::size_t depth) {
     std::vector<RingReader<T>> rings;
     for (std::size_t i = 0; i < count; ++i) {
-        rings.emplace_back(at + i * RingLayout<T>::bytes(depth), depth, RingReader<T>::From::Newest);
+        rings.emplace_back(at + i * RingLayout<T>::bytes(depth), depth,
+                           RingReader<T>::From::Newest);
     }
     return rings;
 }
@@ -120,7 +121,8 @@ StatusWriter::StatusWriter(const StatusSetup& setup, const StatusLayout& layout,
       events_{memory_.data() + layout.events, EventDepth},
       replies_{memory_.data() + layout.replies, ReplyDepth},
       axes_{makeRings<AxisSample>(memory_.data() + layout.axes, setup.axes.size(), samples)},
-      groups_{makeRings<GroupSample>(memory_.data() + layout.groups, setup.groups.size(), samples)} {
+      groups_{
+          makeRings<GroupSample>(memory_.data() + layout.groups, setup.groups.size(), samples)} {
     const StatusHeader header = headerOf(setup, samples);
     std::memcpy(memory_.data(), &header, sizeof header);
     std::byte* const members = memory_.data() + layout.members;
@@ -141,14 +143,14 @@ StatusReader::StatusReader(SharedMemory& memory, const StatusHeader& header,
     : memory_{std::move(memory)},
       header_{header},
       axisNames_{readMembers(memory_.data() + layout.members, header.axes)},
-      groupNames_{readMembers(
-          memory_.data() + layout.members + header.axes * sizeof(MemberInfo), header.groups)},
+      groupNames_{readMembers(memory_.data() + layout.members + header.axes * sizeof(MemberInfo),
+                              header.groups)},
       machine_{memory_.data() + layout.machine, header.samples,
                RingReader<MachineSample>::From::Newest},
       events_{memory_.data() + layout.events, EventDepth, RingReader<EventRecord>::From::Oldest},
       replies_{memory_.data() + layout.replies, ReplyDepth, RingReader<ReplyRecord>::From::Newest},
       axes_{readRings<AxisSample>(memory_.data() + layout.axes, header.axes, header.samples)},
-      groups_{readRings<GroupSample>(memory_.data() + layout.groups, header.groups,
-                                     header.samples)} {}
+      groups_{
+          readRings<GroupSample>(memory_.data() + layout.groups, header.groups, header.samples)} {}
 
 }  // namespace takt::bridge

@@ -159,7 +159,7 @@ std::filesystem::path bridgeExecutable() {
         self.dli_fname != nullptr) {
         folder = std::filesystem::absolute(self.dli_fname).parent_path();
     }
-    const std::filesystem::path beside = folder / "takt-bridge";
+    std::filesystem::path beside = folder / "takt-bridge";
     std::error_code fault;
     if (std::filesystem::is_regular_file(beside, fault)) return beside;
     return (folder / TAKT_LIBEXEC_FROM_LIB / "takt-bridge").lexically_normal();

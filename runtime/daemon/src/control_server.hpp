@@ -20,8 +20,8 @@
 namespace takt::daemon {
 
 /// Serves the control socket on a thread of its own: status and events for everybody who may
-/// connect, commands through the gate. The bridge, where there is one, is served by the same thread.
-/// It reaches the cycle through rings and sequence locks only.
+/// connect, commands through the gate. The bridge, where there is one, is served by the same
+/// thread. It reaches the cycle through rings and sequence locks only.
 class ControlServer {
 public:
     static constexpr std::size_t MostClients = 16;

@@ -81,7 +81,8 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       control_{{machine_, bus_.master(), axes_, programs_, bridge_ ? &bridge_->status() : nullptr},
                machine.commands,
                !options.recordCommands.empty()},
-      server_{{machine_, programs_, control_, bridge_.get()}, options.socket, options.recordCommands},
+      server_{
+          {machine_, programs_, control_, bridge_.get()}, options.socket, options.recordCommands},
       cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, control_, bus_.clock(),
               machine_.network.cycle}},
       pace_{!options.fast && options.interface.empty()},

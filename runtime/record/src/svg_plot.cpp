@@ -224,10 +224,9 @@ void Painter::panelGrid(const Range& range) {
 void Painter::panelLegend(const PlotPanel& panel) {
     constexpr double lineHeight = 17.0;
     constexpr auto mostLines = static_cast<std::size_t>(PanelHeight / lineHeight) + 1;
-    const auto shown = static_cast<std::size_t>(
-        std::count_if(panel.curves.begin(), panel.curves.end(), [this](const PlotCurve& curve) {
-            return !data_.curve(curve.column).empty();
-        }));
+    const auto shown = static_cast<std::size_t>(std::count_if(
+        panel.curves.begin(), panel.curves.end(),
+        [this](const PlotCurve& curve) { return !data_.curve(curve.column).empty(); }));
     double py = y_ + 14.0;
     std::size_t lines = 0;
     for (const PlotCurve& curve : panel.curves) {

@@ -69,8 +69,8 @@ public:
 
     RingReader(const std::byte* at, std::size_t depth, From from) noexcept
         : head_{reinterpret_cast<const typename Layout::Head*>(at)},
-          slots_{reinterpret_cast<const typename Layout::Slot*>(
-              at + sizeof(typename Layout::Head))},
+          slots_{
+              reinterpret_cast<const typename Layout::Slot*>(at + sizeof(typename Layout::Head))},
           depth_{depth} {
         const std::uint64_t count = head_->count.load(std::memory_order_acquire);
         const bool overtaken = count > depth_;

@@ -17,9 +17,9 @@ inline constexpr std::uint32_t ProtocolVersion = 1;
 inline constexpr int StatusDescriptor = 3;
 inline constexpr int CommandDescriptor = 4;
 
-inline constexpr std::size_t EventDepth = 256;    ///< events kept for late subscribers
-inline constexpr std::size_t ReplyDepth = 256;    ///< answers that may wait for the bridge
-inline constexpr std::size_t CommandDepth = 256;  ///< commands that may wait for the daemon
+inline constexpr std::size_t EventDepth = 256;      ///< events kept for late subscribers
+inline constexpr std::size_t ReplyDepth = 256;      ///< answers that may wait for the bridge
+inline constexpr std::size_t CommandDepth = 256;    ///< commands that may wait for the daemon
 inline constexpr std::uint32_t MostMembers = 4096;  ///< axes or groups of a machine
 
 /// Text of at most N - 1 characters, ended by 0.
