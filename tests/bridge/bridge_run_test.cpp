@@ -198,6 +198,37 @@ TEST(Bridge, IsAProcessWithoutRightsAndTheMachineOneWithoutDds) {
     EXPECT_TRUE(waitFor(isGone, StartTime));
 }
 
+TEST(Bridge, ThatHangsIsStartedAnew) {
+    const std::string folder = freshFolder("bridge_hangs");
+    const OwnMachine machine = ownMachine(folder);
+    DdsClient client{machine.domain, machine.name, 1};
+    RunningTakt takt{arguments(machine, "60s", {"--sim", "--program", Wave}), folder};
+    const auto heardOf = [&client](const std::string& text) {
+        return waitFor(
+            [&] {
+                client.listen();
+                return client.machineSamples() > 0 && client.heardOf(text);
+            },
+            StartTime);
+    };
+    ASSERT_TRUE(heardOf("bridge started"));
+    const pid_t bridge = takt.bridge();
+    const auto watched = runTakt({"watch", "--once", "--socket", machine.socket}, folder);
+    EXPECT_THAT(watched.output, HasSubstr("bridge process " + std::to_string(bridge)));
+    ::kill(bridge, SIGSTOP);
+    EXPECT_TRUE(heardOf("process " + std::to_string(bridge) + ", ended by signal 9"));
+    EXPECT_NE(takt.bridge(), bridge);
+}
+
+TEST(Bridge, IsToldByTheCheckOfAMachine) {
+    const std::string folder = freshFolder("bridge_check");
+    const OwnMachine machine = ownMachine(folder, "rate=\"50 Hz\"");
+    const auto checked = runTakt({"check", machine.file}, folder);
+    EXPECT_EQ(checked.exitCode, 0) << checked.output;
+    EXPECT_THAT(checked.output, HasSubstr("bridge: DDS domain " + std::to_string(machine.domain) +
+                                          " on lo, status at 50 Hz, commands off"));
+}
+
 TEST(Bridge, ThatCannotWorkIsTriedAgainAndTheMachineRuns) {
     const std::string folder = freshFolder("bridge_no_interface");
     const OwnMachine machine = ownMachine(folder, "interface=\"nosuch0\"");

@@ -47,16 +47,21 @@ std::string nameOf(const bridge::CommandRecord& record) {
 BridgeDoor::BridgeDoor(const config::MachineConfig& machine)
     : status_{setupOf(machine)},
       process_{bridgeExecutable(), {status_.descriptor(), commands_.descriptor()}},
-      takesCommands_{machine.bridge.dds.commands} {}
+      takesCommands_{machine.bridge.dds.commands},
+      // A slow rate is no hanging.
+      hangCycles_{std::max(static_cast<core::CycleNumber>(HangTime / machine.network.cycle),
+                           core::CycleNumber{4} * machine.bridge.dds.everyCycles)} {}
 
-std::string BridgeDoor::serve(CommandGate& gate) {
+std::string BridgeDoor::serve(CommandGate& gate, core::CycleNumber cycle) {
     bridge::CommandRecord record;
     for (std::size_t i = 0; i < MostCommands && commands_.next(record); ++i) take(record, gate);
+    watchProgress(cycle);
     const pid_t before = process_.pid();
     switch (process_.supervise(commands_.published() > 0)) {
         case BridgeProcess::Change::None:
             return {};
         case BridgeProcess::Change::Started:
+            progressCycle_ = cycle;
             return fmt::format("bridge started, process {}", process_.pid());
         case BridgeProcess::Change::Ended:
             break;
@@ -111,6 +116,14 @@ void BridgeDoor::tell(const EventReport& event) {
     bridge::EventRecord record{.number = event.number, .cycle = event.cycle};
     bridge::put(record.text, event.text);
     status_.event(record);
+}
+
+void BridgeDoor::watchProgress(core::CycleNumber cycle) {
+    if (commands_.published() != progress_) progressCycle_ = cycle;
+    progress_ = commands_.published();
+    if (cycle - progressCycle_ <= hangCycles_) return;
+    progressCycle_ = cycle;
+    process_.abort();
 }
 
 /// With the process all that spoke through it are gone.

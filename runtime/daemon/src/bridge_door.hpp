@@ -20,15 +20,17 @@ class BridgeDoor {
 public:
     static constexpr std::size_t MostClients = 32;
     static constexpr std::size_t MostCommands = 64;  ///< in one go
+    /// Of the machine: a bridge that publishes nothing for so long hangs.
+    static constexpr std::chrono::seconds HangTime{5};
 
     /// The process is started by the first serve(). \throw std::runtime_error when it cannot be
     explicit BridgeDoor(const config::MachineConfig& machine);
 
     [[nodiscard]] bridge::StatusWriter& status() noexcept { return status_; }
 
-    /// Looks after the process and hands its commands to the gate.
+    /// Looks after the process and hands its commands to the gate. \param cycle the last one
     /// \return what became of the process, in words; empty when nothing has changed
-    std::string serve(CommandGate& gate);
+    std::string serve(CommandGate& gate, core::CycleNumber cycle);
     /// \return false when the client is not one of this door
     bool answer(CommandGate::Client client, const ControlReply& reply);
     void tell(const EventReport& event);
@@ -49,11 +51,15 @@ private:
     void take(const bridge::CommandRecord& record, CommandGate& gate);
     void reply(std::uint64_t key, const ControlReply& reply);
     void forgetAll(CommandGate& gate);
+    void watchProgress(core::CycleNumber cycle);
 
     bridge::StatusWriter status_;
     bridge::CommandReceiver commands_;
     BridgeProcess process_;
     bool takesCommands_;
+    core::CycleNumber hangCycles_;
+    core::CycleNumber progressCycle_{0};  ///< in which it was last seen to publish
+    std::uint64_t progress_{0};
     std::map<std::uint64_t, Remote> remotes_;  ///< by writer
 };
 

@@ -137,19 +137,22 @@ void BridgeProcess::planRestart(const std::string& end, bool working) {
 }
 
 void BridgeProcess::stop() {
-    if (pid_ == 0) return;
-    int status = 0;
-    kill(pid_, SIGTERM);
-    for (int i = 0; i < MostEndPolls; ++i) {
-        if (hasEnded(status)) {
-            pid_ = 0;
-            return;
+    // Where even the second one is not permitted, the process ends with this thread.
+    for (const int signal : {SIGTERM, SIGKILL}) {
+        if (pid_ != 0) kill(pid_, signal);
+        for (int i = 0; i < MostEndPolls && pid_ != 0; ++i) {
+            int status = 0;
+            if (hasEnded(status)) {
+                pid_ = 0;
+            } else {
+                ::poll(nullptr, 0, EndPollMs);
+            }
         }
-        ::poll(nullptr, 0, EndPollMs);
     }
-    kill(pid_, SIGKILL);
-    waitpid(pid_, &status, 0);
-    pid_ = 0;
+}
+
+void BridgeProcess::abort() noexcept {
+    if (pid_ != 0) kill(pid_, SIGKILL);
 }
 
 std::filesystem::path bridgeExecutable() {

@@ -36,6 +36,8 @@ public:
     Change supervise(bool working);
     /// Asks it to end and sees that it does.
     void stop();
+    /// It hangs: supervise() will find it ended.
+    void abort() noexcept;
 
     /// 0 while it does not run.
     [[nodiscard]] pid_t pid() const noexcept { return pid_; }

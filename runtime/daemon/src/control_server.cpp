@@ -191,8 +191,9 @@ void ControlServer::keep(core::CycleNumber cycle, std::string text) {
 
 void ControlServer::serveBridge() {
     if (parts_.bridge == nullptr) return;
-    std::string change = parts_.bridge->serve(gate_);
-    if (!change.empty()) keep(parts_.control.board().run.read().cycle, std::move(change));
+    const core::CycleNumber cycle = parts_.control.board().run.read().cycle;
+    std::string change = parts_.bridge->serve(gate_, cycle);
+    if (!change.empty()) keep(cycle, std::move(change));
 }
 
 void ControlServer::takeCommands() {
