@@ -103,6 +103,17 @@ TEST(StatusMemory, TellsANewBridgeTheEventsOfBefore) {
     }
 }
 
+TEST(StatusMemory, TellsANewBridgeNoReplyOfBefore) {
+    StatusWriter writer{twoAxes()};
+    writer.reply({.request = 1});
+    StatusReader reader{writer.descriptor()};
+    ReplyRecord reply;
+    EXPECT_FALSE(reader.reply(reply));
+    writer.reply({.request = 2});
+    ASSERT_TRUE(reader.reply(reply));
+    EXPECT_EQ(reply.request, 2U);
+}
+
 TEST(StatusMemory, CannotBeWrittenByWhoeverGetsItsDescriptor) {
     const StatusWriter writer{twoAxes()};
     EXPECT_THROW(SharedMemory::attach(writer.descriptor(), SharedMemory::Others::Write),

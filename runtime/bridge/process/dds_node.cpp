@@ -234,10 +234,11 @@ std::span<const CommandRecord> DdsNode::takeCommands() {
         dds_take(commandReader_, samples.data(), infos.data(), MostCommands, MostCommands);
     for (std::size_t i = 0; count > 0 && i < static_cast<std::size_t>(count); ++i) {
         const auto& from = *static_cast<const takt_dds_AxisCommand*>(samples[i]);
-        CommandRecord command;
-        copy(from.machine, command.axis);
         // The key is there even when only the end of a writer is told.
-        if (view(command.axis) != view(header_.machine)) continue;
+        Name machine;
+        copy(from.machine, machine);
+        if (view(machine) != view(header_.machine)) continue;
+        CommandRecord command;
         command.writer = infos[i].publication_handle;
         command.client = from.client;
         if (infos[i].valid_data) {
@@ -249,7 +250,6 @@ std::span<const CommandRecord> DdsNode::takeCommands() {
             copy(from.who, command.who);
         } else {
             command.order = CommandOrder::Leave;
-            command.axis = {};
         }
         commands_.push_back(command);
     }

@@ -148,7 +148,7 @@ StatusReader::StatusReader(SharedMemory& memory, const StatusHeader& header,
       machine_{memory_.data() + layout.machine, header.samples,
                RingReader<MachineSample>::From::Newest},
       events_{memory_.data() + layout.events, EventDepth, RingReader<EventRecord>::From::Oldest},
-      replies_{memory_.data() + layout.replies, ReplyDepth, RingReader<ReplyRecord>::From::Newest},
+      replies_{memory_.data() + layout.replies, ReplyDepth, RingReader<ReplyRecord>::From::Next},
       axes_{readRings<AxisSample>(memory_.data() + layout.axes, header.axes, header.samples)},
       groups_{
           readRings<GroupSample>(memory_.data() + layout.groups, header.groups, header.samples)} {}

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <takt/bridge/command_memory.hpp>
 #include <takt/bridge/status_memory.hpp>

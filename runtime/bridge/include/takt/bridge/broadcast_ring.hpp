@@ -65,7 +65,8 @@ class RingReader {
     using Layout = RingLayout<T>;
 
 public:
-    enum class From : std::uint8_t { Oldest, Newest };
+    /// Where to begin: with all that is kept, with the last one, or with what is still to come.
+    enum class From : std::uint8_t { Oldest, Newest, Next };
 
     RingReader(const std::byte* at, std::size_t depth, From from) noexcept
         : head_{reinterpret_cast<const typename Layout::Head*>(at)},
@@ -76,6 +77,7 @@ public:
         const bool overtaken = count > depth_;
         next_ = overtaken ? count - depth_ : 0;
         if (from == From::Newest && count > 0) next_ = count - 1;
+        if (from == From::Next) next_ = count;
     }
 
     /// rt. \return false when there is none

@@ -75,7 +75,8 @@ private:
     std::vector<RingWriter<GroupSample>> groups_;
 };
 
-/// The bridge's end: begins with the samples of now and with all events that are kept.
+/// The bridge's end: begins with the samples of now, all events that are kept, and no reply to what
+/// was asked of another bridge.
 class StatusReader {
 public:
     /// \throw std::runtime_error when this is not the status memory of a daemon of this version
