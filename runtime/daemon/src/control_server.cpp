@@ -33,7 +33,7 @@ void blockSignals() {
 
 ControlServer::ControlServer(const Parts& parts, const std::filesystem::path& socket,
                              const std::filesystem::path& commandFile)
-    : parts_{parts}, socket_{socket, parts.machine.name}, gate_{parts.control} {
+    : parts_{parts}, socket_{socket, parts.machine.name}, gate_{parts.control, parts.stock} {
     if (!commandFile.empty()) commandFile_ = std::make_unique<record::OutputFile>(commandFile);
     // The thread inherits the mask: no signal can reach it before it has set its own.
     sigset_t all;
@@ -62,6 +62,8 @@ void ControlServer::serve() {
     while (!ending_) {
         waitForClients();
         takeAnswers();
+        answerInquiries();
+        parts_.stock.clear();
         takeEvents();
         takeCommands();
         serveBridge();
@@ -69,6 +71,7 @@ void ControlServer::serve() {
         sendAll();
         dropGone();
     }
+    gate_.finish();
     takeAnswers();
     takeEvents();
     sendAll();
@@ -139,12 +142,21 @@ void ControlServer::handle(CommandGate::Client number, Client& client, std::stri
     const auto request = parseRequest(line, error);
     if (!request) return refuse(client, {}, std::move(error));
     if (!request->who.empty()) client.who = request->who.substr(0, 32);
+    const bool stops = request->verb == name(Order::MachineStop) ||
+                       request->verb == name(Order::Halt) || request->verb == name(Order::Leave);
+    if (!client.rate.take(std::chrono::steady_clock::now()) && !stops) {
+        return refuse(
+            client, *request,
+            fmt::format("too many requests; allowed: {:.0f} in a second", MostRequestsPerSecond));
+    }
     ControlReply reply{.id = request->id};
     if (request->verb == "status") {
         reply.status = report();
     } else if (request->verb == "events") {
         takeEvents();
         reply.events = eventsAfter(request->after);
+    } else if (request->verb == "network") {
+        return inquire(number, client, *request);
     } else {
         return order(number, client, *request);
     }
@@ -162,6 +174,27 @@ void ControlServer::order(CommandGate::Client number, Client& client,
         fmt::format("{} (process {})", client.who.empty() ? "a client" : client.who, client.pid);
     if (std::string why = gate_.submit(number, name, request); !why.empty())
         refuse(client, request, std::move(why));
+}
+
+void ControlServer::inquire(CommandGate::Client number, Client& client,
+                            const ControlRequest& request) {
+    const RunPhase phase = parts_.control.board().run.read().phase;
+    if (phase == RunPhase::BringUp || phase == RunPhase::Over)
+        return refuse(client, request, "no cycle runs: the network is brought up, or the run ends");
+    if (inquiries_.size() >= MostClients) return refuse(client, request, "too many at once");
+    inquiries_.push_back({number, request.id, parts_.control.diagnosis().ask()});
+}
+
+void ControlServer::answerInquiries() {
+    std::erase_if(inquiries_, [this](const Inquiry& inquiry) {
+        const auto client = clients_.find(inquiry.client);
+        if (client == clients_.end()) return true;
+        if (!parts_.control.diagnosis().shown(inquiry.number)) return false;
+        ControlReply reply{.id = inquiry.request};
+        reply.network = networkReport();
+        client->second.unsent += encode(reply);
+        return true;
+    });
 }
 
 void ControlServer::takeAnswers() {

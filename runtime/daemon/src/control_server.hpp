@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "bridge_door.hpp"
 #include "command_gate.hpp"
 #include "machine_control.hpp"
+#include "rate_limit.hpp"
 
 namespace takt::daemon {
 
@@ -29,10 +31,12 @@ public:
     static constexpr std::size_t MostUnsent =
         1U << 20U;  ///< then a client that does not read is dropped
     static constexpr std::size_t KeptEvents = 2000;
+    /// Of one client; then its requests are refused, but never a stop.
+    static constexpr double MostRequestsPerSecond = 500;
 
     struct Parts {
         const config::MachineConfig& machine;
-        std::span<const ProgramHost> programs;  ///< their lists of watches; not their state
+        ProgramStock& stock;
         MachineControl& control;
         BridgeDoor* bridge;  ///< null: none
     };
@@ -57,6 +61,13 @@ private:
         std::string received;
         std::string unsent;
         bool gone{false};
+        RateLimit rate{MostRequestsPerSecond, std::chrono::steady_clock::now()};
+    };
+    /// Who waits for a diagnosis to be shown.
+    struct Inquiry {
+        CommandGate::Client client{CommandGate::Nobody};
+        std::uint64_t request{0};
+        std::uint32_t number{0};
     };
     void serve();
     void waitForClients();
@@ -65,6 +76,8 @@ private:
     void handle(CommandGate::Client number, Client& client, std::string_view line);
     void order(CommandGate::Client number, Client& client, const ControlRequest& request);
     void refuse(Client& client, const ControlRequest& request, std::string why);
+    void inquire(CommandGate::Client number, Client& client, const ControlRequest& request);
+    void answerInquiries();
     void takeAnswers();
     void takeEvents();
     void takeCommands();
@@ -73,6 +86,7 @@ private:
     void dropGone();
     void keep(core::CycleNumber cycle, std::string text);
     [[nodiscard]] StatusReport report() const;
+    [[nodiscard]] NetworkReport networkReport() const;
     [[nodiscard]] std::vector<EventReport> eventsAfter(std::uint64_t number) const;
     [[nodiscard]] double secondsOf(core::CycleNumber cycle) const;
 
@@ -81,6 +95,7 @@ private:
     std::unique_ptr<record::OutputFile> commandFile_;
     CommandGate gate_;
     std::map<CommandGate::Client, Client> clients_;
+    std::vector<Inquiry> inquiries_;
     std::deque<EventReport> events_;
     std::uint64_t lastEvent_{0};
     std::uint64_t commandsLost_{0};

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "axes.hpp"
+#include "bus_desk.hpp"
 #include "command_desk.hpp"
 #include "control_command.hpp"
+#include "diagnosis_board.hpp"
 #include "event_text.hpp"
 #include "machine_stop.hpp"
 #include "program_host.hpp"
@@ -20,6 +22,7 @@ namespace takt::daemon {
 struct CycleOrders {
     bool runPrograms{false};
     bool operating{false};  ///< commands and stop inputs count
+    bool allTold{true};     ///< what was noted of programs has been put into words
     bool stopAxes{false};   ///< the run ends: every axis ramps down and is switched off
     RunPhase phase{RunPhase::GoingOp};
 };
@@ -32,6 +35,7 @@ public:
         fieldbus::ethercat::Master& master;
         Axes& axes;
         std::span<ProgramHost> programs;
+        ProgramStock& stock;
         bridge::StatusWriter* bridge;  ///< null: none
     };
     /// \param replay commands of a file, in the order of their cycles
@@ -45,6 +49,7 @@ public:
 
     [[nodiscard]] ControlRings& rings() noexcept { return rings_; }
     [[nodiscard]] const StatusBoard& board() const noexcept { return board_; }
+    [[nodiscard]] DiagnosisBoard& diagnosis() noexcept { return diagnosis_; }
     [[nodiscard]] const ControlNames& names() const noexcept { return names_; }
     [[nodiscard]] const MachineStop& machineStop() const noexcept { return stop_; }
 
@@ -71,7 +76,9 @@ private:
     ControlNames names_;
     ControlRings rings_;
     StatusBoard board_;
+    DiagnosisBoard diagnosis_;
     MachineStop stop_;
+    BusDesk bus_;
     CommandDesk desk_;
     Seen seen_;
 };
