@@ -6,8 +6,8 @@
 #include <limits>
 #include <thread>
 
+#include "bridged_takt.hpp"
 #include "dds_client.hpp"
-#include "running_takt.hpp"
 
 namespace takt::test {
 namespace {
@@ -56,7 +56,7 @@ protected:
     std::string folder;
     OwnMachine machine;
     DdsClient client;
-    RunningTakt takt;
+    BridgedTakt takt;
 };
 
 TEST_F(CommandedOverDds, AnAxisMovesAndTheCommandsAreRecordedWithTheirCycles) {

@@ -11,8 +11,8 @@
 #include <random>
 #include <sstream>
 
+#include "bridged_takt.hpp"
 #include "dds_client.hpp"
-#include "running_takt.hpp"
 
 namespace takt::test {
 namespace {
@@ -101,7 +101,7 @@ std::map<std::string, Series> readSeries(const std::string& csv) {
 TEST(Bridge, GivesASubscriberEverySampleOfSixteenAxes) {
     const std::string folder = freshFolder("bridge_samples");
     const OwnMachine machine = ownMachine(folder, "rate=\"100 Hz\"");
-    RunningTakt takt{arguments(machine, "11s", {"--sim", "--program", Wave}), folder};
+    BridgedTakt takt{arguments(machine, "11s", {"--sim", "--program", Wave}), folder};
     UndisturbedRun undisturbed{machine, "11s", folder};
     // Cycles are the clock of both: 10 s are 10000 of them, however long they take here.
     const auto subscriber = runCommand({"sh", "-c",
@@ -131,7 +131,7 @@ TEST(Bridge, MayBeKilledAtAnyInstantWithoutAnEffectOnTheMachine) {
     const std::string folder = freshFolder("bridge_killed");
     const OwnMachine machine = ownMachine(folder);
     DdsClient client{machine.domain, machine.name, 1};
-    RunningTakt takt{arguments(machine, "30s", {"--sim", "--program", Wave}), folder};
+    BridgedTakt takt{arguments(machine, "30s", {"--sim", "--program", Wave}), folder};
     UndisturbedRun undisturbed{machine, "30s", folder};
 
     std::mt19937 random{20250};  // NOLINT: a fixed seed is what is wanted
@@ -169,7 +169,7 @@ TEST(Bridge, IsAProcessWithoutRightsAndTheMachineOneWithoutDds) {
     const std::string folder = freshFolder("bridge_rights");
     const OwnMachine machine = ownMachine(folder);
     DdsClient client{machine.domain, machine.name, 1};
-    RunningTakt takt{arguments(machine, "60s", {"--sim", "--program", Wave}), folder};
+    BridgedTakt takt{arguments(machine, "60s", {"--sim", "--program", Wave}), folder};
     ASSERT_TRUE(waitFor(
         [&] {
             client.listen();
@@ -202,7 +202,7 @@ TEST(Bridge, ThatHangsIsStartedAnew) {
     const std::string folder = freshFolder("bridge_hangs");
     const OwnMachine machine = ownMachine(folder);
     DdsClient client{machine.domain, machine.name, 1};
-    RunningTakt takt{arguments(machine, "60s", {"--sim", "--program", Wave}), folder};
+    BridgedTakt takt{arguments(machine, "60s", {"--sim", "--program", Wave}), folder};
     const auto heardOf = [&client](const std::string& text) {
         return waitFor(
             [&] {

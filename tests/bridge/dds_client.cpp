@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "running_takt.hpp"
+#include "bridged_takt.hpp"
 
 namespace takt::test {
 

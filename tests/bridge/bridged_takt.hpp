@@ -9,13 +9,13 @@
 
 namespace takt::test {
 
-/// A `takt` that runs beside the test, with the trap in front of it where the build has one.
-class RunningTakt {
+/// A `takt` that runs beside the test, and its bridge.
+class BridgedTakt {
 public:
-    RunningTakt(const std::vector<std::string>& arguments, std::string folder);
-    ~RunningTakt();
-    RunningTakt(const RunningTakt&) = delete;
-    RunningTakt& operator=(const RunningTakt&) = delete;
+    BridgedTakt(const std::vector<std::string>& arguments, std::string folder);
+    ~BridgedTakt();
+    BridgedTakt(const BridgedTakt&) = delete;
+    BridgedTakt& operator=(const BridgedTakt&) = delete;
 
     [[nodiscard]] pid_t pid() const { return pid_; }
     /// The process of its bridge; 0 while there is none.

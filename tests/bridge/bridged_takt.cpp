@@ -1,6 +1,5 @@
-#include "running_takt.hpp"
+#include "bridged_takt.hpp"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,35 +25,18 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
 
 }  // namespace
 
-RunningTakt::RunningTakt(const std::vector<std::string>& arguments, std::string folder)
-    : folder_{std::move(folder)} {
-    std::vector<std::string> command{std::string{TAKT_BINARY_DIR} + "/takt"};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    std::vector<char*> words;
-    for (std::string& word : command) words.push_back(word.data());
-    words.push_back(nullptr);
-    const std::string trap = std::string{TAKT_BINARY_DIR} + "/libtakt_trap.so";
-    const bool trapped = std::filesystem::exists(trap);
-    pid_ = fork();
-    if (pid_ != 0) return;
-    const int output =
-        open((folder_ + "/takt.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    dup2(output, STDOUT_FILENO);
-    dup2(output, STDERR_FILENO);
-    if (trapped) setenv("LD_PRELOAD", trap.c_str(), 1);
-    if (trapped) setenv("TAKT_TRAP_REPORT", (folder_ + "/trap.txt").c_str(), 1);
-    if (chdir(folder_.c_str()) != 0) _exit(126);
-    execv(words[0], words.data());
-    _exit(127);
-}
+BridgedTakt::BridgedTakt(const std::vector<std::string>& arguments, std::string folder)
+    : folder_{std::move(folder)},
+      pid_{startTakt(arguments, folder_, folder_ + "/takt.txt",
+                     {"TAKT_TRAP_REPORT=" + folder_ + "/trap.txt"})} {}
 
-RunningTakt::~RunningTakt() {
+BridgedTakt::~BridgedTakt() {
     if (ended()) return;
     kill(SIGKILL);
     finish();
 }
 
-pid_t RunningTakt::bridge() const {
+pid_t BridgedTakt::bridge() const {
     std::error_code fault;
     const std::string tasks = "/proc/" + std::to_string(pid_) + "/task";
     for (const auto& task : std::filesystem::directory_iterator{tasks, fault}) {
@@ -68,19 +50,19 @@ pid_t RunningTakt::bridge() const {
     return 0;
 }
 
-bool RunningTakt::ended() {
+bool BridgedTakt::ended() {
     if (!reaped_) reaped_ = waitpid(pid_, &status_, WNOHANG) == pid_;
     return reaped_;
 }
 
-ProcessResult RunningTakt::finish() {
+ProcessResult BridgedTakt::finish() {
     if (!reaped_) waitpid(pid_, &status_, 0);
     reaped_ = true;
     return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_),
             readFile(folder_ + "/takt.txt")};
 }
 
-void RunningTakt::kill(int signal) const {
+void BridgedTakt::kill(int signal) const {
     if (!reaped_) ::kill(pid_, signal);
 }
 
@@ -92,7 +74,7 @@ OwnMachine ownMachine(const std::string& folder, const std::string& dds) {
     machine.name = "stations" + std::to_string(process);
     machine.domain = firstDomain + process % domains;
     machine.file = folder + "/machine.xml";
-    machine.socket = folder + "/takt.sock";
+    machine.socket = "takt.sock";  // in the folder; the path of a socket must be short
     std::string text = readFile(std::string{TAKT_SOURCE_DIR} + "/samples/07_dds/machine.xml");
     replace(text, "Machine name=\"stations\"", "Machine name=\"" + machine.name + "\"");
     replace(text, "<Dds rate=\"100 Hz\" domain=\"7\" interface=\"lo\" commands=\"off\"/>",
