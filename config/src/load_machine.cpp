@@ -107,6 +107,7 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     machine.machineStop = readMachineStop(root.childReader("MachineStop"), network, axes);
     machine.twin = readTwin(root.childReader("Twin"), network, axes);
     readRealtime(root.childReader("Realtime"), machine.scheduler);
+    machine.bridge = readBridge(root.childReader("Bridge"), network.params.cycle);
     noteIdleSlaves(network);
     root.finish();
     machine.network = std::move(network.params);

@@ -94,6 +94,9 @@ void addDriveObjects(SlavePart& slave, const AxisPart& axis, std::uint32_t lostL
 /// Reads <Realtime>: how the cycle runs on a real network.
 void readRealtime(ElementReader reader, scheduler::SchedulerParams& params);
 
+/// Reads <Bridge>: the doors to other processes.
+[[nodiscard]] bridge::BridgeParams readBridge(ElementReader reader, core::Duration cycle);
+
 /// Position, velocity, acceleration and jerk in the user unit of an axis.
 struct UnitDimensions {
     Dimension position{Dimension::Length};
