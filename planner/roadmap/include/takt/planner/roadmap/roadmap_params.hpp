@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <takt/core/units.hpp>
+#include <vector>
+
+namespace takt::planner::roadmap {
+
+/// What a keep-out covers of one axis. It reaches as far as the axis does where nothing is said.
+struct KeepOutSpan {
+    std::size_t axis{0};  ///< place of the axis among those that are planned
+    core::Position from{-std::numeric_limits<double>::infinity()};
+    core::Position to{std::numeric_limits<double>::infinity()};
+};
+
+/// A disc in the plane of two axes: with spans of further axes, a cylinder.
+struct KeepOutDisc {
+    std::size_t firstAxis{0};
+    std::size_t secondAxis{1};
+    core::Position firstCentre{};
+    core::Position secondCentre{};
+    core::Distance radius{};  ///< above 0
+};
+
+/// A region that the axes must not enter: everything that lies within all of its spans and, if it
+/// has one, within its disc. Spans alone make a box. Axes that it does not name may be anywhere.
+struct KeepOutParams {
+    std::string name;
+    std::vector<KeepOutSpan> spans;  ///< each axis once, from below to
+    std::optional<KeepOutDisc> disc;
+    /// How far the axes stay away from it: size of the tool, play, and so on; 0 or more. It is kept
+    /// along each axis of a span and radially around the disc, so not less in any direction.
+    core::Distance clearance{};
+    std::string origin;  ///< "machine.xml:90"
+};
+
+}  // namespace takt::planner::roadmap
