@@ -98,8 +98,7 @@ double squareToSegment(PlanePoint p, PlanePoint q) noexcept {
     const double dx = q.x - p.x;
     const double dy = q.y - p.y;
     const double square = dx * dx + dy * dy;
-    const double along =
-        square > 0.0 ? std::clamp(-(p.x * dx + p.y * dy) / square, 0.0, 1.0) : 0.0;
+    const double along = square > 0.0 ? std::clamp(-(p.x * dx + p.y * dy) / square, 0.0, 1.0) : 0.0;
     const double x = p.x + along * dx;
     const double y = p.y + along * dy;
     return x * x + y * y;
@@ -183,8 +182,10 @@ bool Obstacles::crosses(const Region& region, Point a, Point b, Point c) noexcep
     for (const Weights corner : {Weights{0.0, 0.0}, Weights{1.0, 0.0}, Weights{0.0, 1.0}})
         (void)piece.push(corner);
     for (const Slab& slab : region.slabs) {
-        cutPiece(piece, [&](Weights w) { return at(w, slab.axis); }, slab.high);
-        cutPiece(piece, [&](Weights w) { return -at(w, slab.axis); }, -slab.low);
+        cutPiece(
+            piece, [&](Weights w) { return at(w, slab.axis); }, slab.high);
+        cutPiece(
+            piece, [&](Weights w) { return -at(w, slab.axis); }, -slab.low);
         if (piece.empty()) return false;
     }
     Weights middle;
@@ -208,9 +209,8 @@ bool Obstacles::crosses(const Region& region, Point a, Point b, Point c) noexcep
 }
 
 std::optional<std::size_t> Obstacles::around(Point point) const noexcept {
-    const auto found = std::find_if(regions_.begin(), regions_.end(), [&](const Region& region) {
-        return contains(region, point);
-    });
+    const auto found = std::find_if(regions_.begin(), regions_.end(),
+                                    [&](const Region& region) { return contains(region, point); });
     if (found == regions_.end()) return std::nullopt;
     return static_cast<std::size_t>(found - regions_.begin());
 }

@@ -62,24 +62,32 @@ Metric searchMetric(const RouteRequest& request, const Obstacles& obstacles) {
     return Metric{std::move(factors)};
 }
 
-/// The shortest of several searches, each shortened; empty when none succeeds.
+/// The shortest of several searches, each shortened; empty when the first finds none.
 Polyline search(const SearchProblem& problem, const RouteRequest& request,
                 std::uint32_t& iterations) {
     constexpr double NearEnough = 1.0 + 1e-3;  // to the straight line, which nothing beats
     constexpr double Ranges[] = {0.25, 0.1, 0.5};
+    // A further search that needs much longer than the first finds nothing that is shorter.
+    constexpr std::uint32_t Patience = 4;
+    constexpr std::uint32_t LeastPatience = 200;
     const Metric& metric = problem.metric;
     const double extent = metric.distance(problem.low, problem.high);
     const double least = metric.distance(problem.start, problem.goal);
     core::Random seeds{request.seed};
     Polyline best;
     SearchTry attempt;
+    std::uint32_t share = request.effort.iterations;
     for (std::uint32_t i = 0; i < request.effort.attempts; ++i) {
         attempt.seed = seeds.next();
         attempt.range = Ranges[i % std::size(Ranges)] * extent;
-        attempt.iterations = request.effort.iterations - iterations;
+        attempt.iterations = std::min(share, request.effort.iterations - iterations);
         SearchResult found = searchTree(problem, attempt);
         iterations += found.iterations;
-        if (found.line.empty()) break;  // nothing is left of the iterations
+        if (i == 0) share = std::max(Patience * found.iterations, LeastPatience);
+        if (found.line.empty()) {
+            if (best.empty()) break;
+            continue;
+        }
         shorten(found.line, problem.obstacles, metric, seeds, request.effort.shortcuts);
         const double length = metric.length(found.line);
         if (length >= attempt.knownLength) continue;
@@ -126,8 +134,8 @@ RouteAnswer planRoute(const RouteRequest& request, const Obstacles& obstacles) {
             high.push_back(request.axes[i].high.count());
             goal.push_back(metric.factor(i) > 0.0 ? request.goal[i] : request.start[i]);
         }
-        line = search({obstacles, metric, low, high, request.start, goal}, request,
-                      answer.iterations);
+        line =
+            search({obstacles, metric, low, high, request.start, goal}, request, answer.iterations);
         if (line.empty()) {
             answer.fault = RouteFault::NoRoute;
             return answer;

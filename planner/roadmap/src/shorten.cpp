@@ -64,8 +64,8 @@ void cutCorners(Polyline& line, const Obstacles& obstacles) {
 
 }  // namespace
 
-void shorten(Polyline& line, const Obstacles& obstacles, const Metric& metric,
-             core::Random& random, std::uint32_t tries) {
+void shorten(Polyline& line, const Obstacles& obstacles, const Metric& metric, core::Random& random,
+             std::uint32_t tries) {
     constexpr std::uint32_t Batch = 25;
     dropPoints(line, obstacles);
     for (std::uint32_t i = 0; i < tries && line.size() > 2; ++i) {

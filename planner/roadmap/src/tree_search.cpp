@@ -46,8 +46,8 @@ private:
     const Metric* metric_;
 };
 
-/// Takes every number from our own generator: the library's seeds one for the whole process, so that
-/// a second plan would see other numbers than the first.
+/// Takes every number from our own generator: the library's seeds one for the whole process, so
+/// that a second plan would see other numbers than the first.
 class SeededSampler final : public ob::StateSampler {
 public:
     SeededSampler(const ob::StateSpace* space, const SearchProblem& problem,
@@ -94,9 +94,8 @@ private:
     void draw(double* values, const Draw& next) {
         for (std::size_t axis = 0; axis < problem_.metric.axes(); ++axis) {
             const bool counts = problem_.metric.factor(axis) > 0.0;
-            values[axis] =
-                counts ? std::clamp(next(axis), problem_.low[axis], problem_.high[axis])
-                       : problem_.start[axis];
+            values[axis] = counts ? std::clamp(next(axis), problem_.low[axis], problem_.high[axis])
+                                  : problem_.start[axis];
         }
     }
 

@@ -11,16 +11,16 @@ namespace takt::planner::roadmap {
 
 /// One axis of a route.
 struct RouteAxis {
-    core::Position low;       ///< its soft limits: below `high`, both finite
+    core::Position low;  ///< its soft limits: below `high`, both finite
     core::Position high;
     core::Velocity velocity;  ///< the fastest it goes; above 0
 };
 
 /// How hard to look. Counted, never timed: the same numbers on every machine.
 struct RouteEffort {
-    std::uint32_t iterations{6000};  ///< of the tree search, over all attempts
-    std::uint32_t attempts{12};      ///< searches with numbers of their own; the shortest result counts
-    std::uint32_t shortcuts{150};    ///< tried on the result of each attempt
+    std::uint32_t iterations{20000};  ///< of the tree search, over all attempts
+    std::uint32_t attempts{12};  ///< searches with numbers of their own; the shortest result counts
+    std::uint32_t shortcuts{150};  ///< tried on the result of each attempt
 };
 
 struct RouteRequest {
@@ -47,8 +47,8 @@ enum class RouteFault : std::uint8_t {
 
 struct RoutePoint {
     std::vector<double> position;
-    /// The path may leave its straight lines so far before and after this point, in path length: the
-    /// triangle between is free. 0 at both ends, and where there is no room: a stop there.
+    /// The path may leave its straight lines so far before and after this point, in path length:
+    /// the triangle between is free. 0 at both ends, and where there is no room: a stop there.
     core::Distance corner{};
 };
 
@@ -63,11 +63,11 @@ struct RouteAnswer {
 };
 
 /// Looks for a way around the keep-outs, from rest to rest. The way is near the shortest where each
-/// axis is measured by the time it needs at full speed. All lines and corner triangles of the answer
-/// are free, exactly, not at samples.
+/// axis is measured by the time it needs at full speed. All lines and corner triangles of the
+/// answer are free, exactly, not at samples.
 ///
-/// The answer depends on the request only, not on the process, the machine or earlier calls. Not for
-/// the cycle: it allocates and takes milliseconds.
+/// The answer depends on the request only, not on the process, the machine or earlier calls. Not
+/// for the cycle: it allocates and takes milliseconds.
 [[nodiscard]] RouteAnswer planRoute(const RouteRequest& request, const Obstacles& obstacles);
 
 }  // namespace takt::planner::roadmap
