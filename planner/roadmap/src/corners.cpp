@@ -67,24 +67,26 @@ bool isWithinLimits(Point point, std::span<const RouteAxis> axes) noexcept {
     return true;
 }
 
-/// Moves corner i of the line outwards where that gives it more room.
-void makeRoom(Polyline& line, std::size_t i, const Metric& path, const Obstacles& obstacles,
+/// Moves a corner of the line outwards where that gives it more room.
+void makeRoom(Polyline& line, std::size_t at, const Metric& path, const Obstacles& obstacles,
               const RouteRequest& request) {
     const double wanted = request.rounding.count();
-    const Corner corner{line[i - 1], line[i], line[i + 1], path};
+    const Corner corner{line[at - 1], line[at], line[at + 1], path};
     const double room = corner.room(obstacles, wanted);
     if (room >= std::min(wanted, corner.most())) return;
     const std::vector<double> shift = corner.outwards(wanted);
-    constexpr double Least = 0.125;
-    for (double share = 1.0; share >= Least; share *= 0.5) {
-        std::vector<double> moved = line[i];
+    constexpr int Tries = 4;
+    double share = 2.0;
+    for (int i = 0; i < Tries; ++i) {
+        share *= 0.5;
+        std::vector<double> moved = line[at];
         for (std::size_t axis = 0; axis < moved.size(); ++axis) moved[axis] += share * shift[axis];
-        if (!isWithinLimits(moved, request.axes) || !obstacles.isFree(line[i - 1], moved) ||
-            !obstacles.isFree(moved, line[i + 1]))
+        if (!isWithinLimits(moved, request.axes) || !obstacles.isFree(line[at - 1], moved) ||
+            !obstacles.isFree(moved, line[at + 1]))
             continue;
-        const Corner there{line[i - 1], moved, line[i + 1], path};
+        const Corner there{line[at - 1], moved, line[at + 1], path};
         if (there.room(obstacles, wanted) <= room) continue;
-        line[i] = std::move(moved);
+        line[at] = std::move(moved);
         return;
     }
 }

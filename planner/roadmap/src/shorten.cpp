@@ -46,19 +46,25 @@ void join(Polyline& line, Place first, Place second) {
     line.insert(place, {std::move(first.point), std::move(second.point)});
 }
 
-/// Cuts each corner where half, a quarter … of its shorter leg can be cut off.
+/// Cuts a corner where half, a quarter … of its legs can be cut off, and says so.
+bool cutCorner(Polyline& line, std::size_t at, const Obstacles& obstacles) {
+    constexpr int Tries = 6;
+    double share = 1.0;
+    for (int i = 0; i < Tries; ++i) {
+        share *= 0.5;
+        std::vector<double> before = between(line[at], line[at - 1], share);
+        std::vector<double> after = between(line[at], line[at + 1], share);
+        if (!obstacles.isFree(before, after)) continue;
+        line[at] = std::move(before);
+        line.insert(line.begin() + static_cast<std::ptrdiff_t>(at) + 1, std::move(after));
+        return true;
+    }
+    return false;
+}
+
 void cutCorners(Polyline& line, const Obstacles& obstacles) {
-    constexpr double Least = 1.0 / 64.0;
     for (std::size_t i = 1; i + 1 < line.size(); ++i) {
-        for (double share = 0.5; share >= Least; share *= 0.5) {
-            std::vector<double> before = between(line[i], line[i - 1], share);
-            std::vector<double> after = between(line[i], line[i + 1], share);
-            if (!obstacles.isFree(before, after)) continue;
-            line[i] = std::move(before);
-            line.insert(line.begin() + static_cast<std::ptrdiff_t>(i) + 1, std::move(after));
-            ++i;
-            break;
-        }
+        if (cutCorner(line, i, obstacles)) ++i;
     }
 }
 
