@@ -126,6 +126,7 @@ ErrorId stateForMotion(const AxisView& view, const Command& command) noexcept {
         case AxisState::SynchronizedMotion:
             break;
     }
+    if (view.grouped) return ErrorId::AxisInGroup;
     // Homing starts from Standstill only; waiting for it in the queue is allowed.
     if (command.kind == CommandKind::Home && !buffered) return ErrorId::InvalidState;
     return ErrorId::None;

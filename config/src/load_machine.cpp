@@ -70,6 +70,18 @@ std::vector<AxisPart> readAxes(ElementReader& machine, NetworkPart& network) {
     return axes;
 }
 
+std::vector<axis::GroupParams> readGroups(ElementReader& machine,
+                                          const std::vector<AxisPart>& axes) {
+    std::vector<axis::GroupParams> groups;
+    UniqueNames names{"a group"};
+    for (const XmlElement element : boundedChildren(machine, "Group")) {
+        const ElementReader reader{element, "group", machine.place().file, machine.diagnostics()};
+        groups.push_back(readGroup(reader, axes));
+        names.add(groups.back().name, reader);
+    }
+    return groups;
+}
+
 std::vector<program::ProgramParams> readPrograms(ElementReader& machine, const Folders& folders,
                                                  ProgramLibraries libraries) {
     std::vector<program::ProgramParams> programs;
@@ -104,6 +116,7 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     Folders folders{folder};
     folders.insert(folders.end(), librarySearch.begin(), librarySearch.end());
     machine.programs = readPrograms(root, folders, libraries);
+    machine.groups = readGroups(root, axes);
     machine.machineStop = readMachineStop(root.childReader("MachineStop"), network, axes);
     machine.twin = readTwin(root.childReader("Twin"), network, axes);
     readRealtime(root.childReader("Realtime"), machine.scheduler);

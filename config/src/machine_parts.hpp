@@ -63,6 +63,9 @@ void addDriveObjects(SlavePart& slave, const AxisPart& axis, std::uint32_t lostL
 /// Reads an <Axis> and ties it to its slave.
 [[nodiscard]] AxisPart readAxis(ElementReader reader, NetworkPart& network);
 
+/// Reads a <Group> of the axes.
+[[nodiscard]] axis::GroupParams readGroup(ElementReader reader, const std::vector<AxisPart>& axes);
+
 /// Reads <Twin>; there is one device for each slave, whatever the file says.
 [[nodiscard]] twin::TwinParams readTwin(ElementReader reader, const NetworkPart& network,
                                         const std::vector<AxisPart>& axes);

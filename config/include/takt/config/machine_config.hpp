@@ -2,6 +2,7 @@
 
 #include <string>
 #include <takt/axis/axis_params.hpp>
+#include <takt/axis/group_params.hpp>
 #include <takt/axis/machine_stop_params.hpp>
 #include <takt/fieldbus/fieldbus_params.hpp>
 #include <takt/program/program_params.hpp>
@@ -19,6 +20,7 @@ struct MachineConfig {
     fieldbus::NetworkParams network;
     scheduler::SchedulerParams scheduler;
     std::vector<axis::AxisParams> axes;
+    std::vector<axis::GroupParams> groups;
     std::vector<program::ProgramParams> programs;
     axis::MachineStopParams machineStop;  ///< inputs name slaves and mapped entries that exist
     twin::TwinParams twin;  ///< one device for each slave, defaults where <Twin> is silent
