@@ -11,7 +11,7 @@ namespace takt::planner::roadmap {
 
 /// What a keep-out covers of one axis. It reaches as far as the axis does where nothing is said.
 struct KeepOutSpan {
-    std::size_t axis{0};  ///< place of the axis among those that are planned
+    std::size_t axis{0};  ///< place of the axis in its group
     core::Position from{-std::numeric_limits<double>::infinity()};
     core::Position to{std::numeric_limits<double>::infinity()};
 };
@@ -35,6 +35,13 @@ struct KeepOutParams {
     /// along each axis of a span and radially around the disc, so not less in any direction.
     core::Distance clearance{};
     std::string origin;  ///< "machine.xml:90"
+};
+
+/// The keep-outs of one group of axes.
+struct ObstacleParams {
+    std::size_t group{0};  ///< place among the machine's groups
+    std::vector<KeepOutParams> keepOuts;
+    std::string origin;  ///< "machine.xml:88"
 };
 
 }  // namespace takt::planner::roadmap
