@@ -95,6 +95,9 @@ Polyline search(const SearchProblem& problem, const RouteRequest& request,
         best = std::move(found.line);
         if (length <= least * NearEnough) break;
     }
+    constexpr double Detour = 1.02;  // that fewer corners are worth
+    mergeCorners(best, problem.obstacles, metric, problem.low, problem.high,
+                 metric.length(best) * Detour);
     return best;
 }
 

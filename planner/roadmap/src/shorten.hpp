@@ -13,4 +13,10 @@ namespace takt::planner::roadmap {
 void shorten(Polyline& line, const Obstacles& obstacles, const Metric& metric, core::Random& random,
              std::uint32_t tries);
 
+/// Joins neighbouring corners into one where their outer legs, made longer, meet: fewer corners
+/// with longer legs are passed faster. The line stays free, within the bounds and below `most` in
+/// length.
+void mergeCorners(Polyline& line, const Obstacles& obstacles, const Metric& metric, Point low,
+                  Point high, double most);
+
 }  // namespace takt::planner::roadmap
