@@ -114,8 +114,8 @@ ErrorId settleDirect(GroupCommand& command) noexcept {
         using T = std::remove_reference_t<decltype(value)>;
         return settle(value, T{Any}, T{Any});
     };
-    for (const ErrorId bad : {settled(d.velocity), settled(d.acceleration),
-                              settled(d.deceleration), settled(d.jerk)}) {
+    for (const ErrorId bad :
+         {settled(d.velocity), settled(d.acceleration), settled(d.deceleration), settled(d.jerk)}) {
         if (bad != ErrorId::None) return bad;
     }
     return ErrorId::None;
@@ -131,8 +131,8 @@ ErrorId settleBlending(const GroupView& view, GroupCommand& command) noexcept {
     if (!isPath(command.kind)) return ErrorId::BlendingNotPossible;
     if (view.inMotion() && !view.pathLast) return ErrorId::BlendingNotPossible;
     const Transition& t = command.transition;
-    const bool sized = t.mode == TransitionMode::CornerDistance ||
-                       t.mode == TransitionMode::MaxCornerDeviation;
+    const bool sized =
+        t.mode == TransitionMode::CornerDistance || t.mode == TransitionMode::MaxCornerDeviation;
     if (!sized && t.mode != TransitionMode::None) return ErrorId::TransitionNotSupported;
     if (sized && !(t.parameter > 0.0 && std::isfinite(t.parameter)))
         return ErrorId::TransitionNotSupported;

@@ -66,9 +66,9 @@ void Group::execute(const GroupCommand& request) noexcept {
 
 void Group::executeMember(const GroupCommand& command) noexcept {
     if (command.kind == GroupCommandKind::AddAxis) {
-        const auto found = std::find_if(
-            machineAxes_.begin(), machineAxes_.end(),
-            [&command](const Axis* axis) { return &axis->traits() == command.axis; });
+        const auto found =
+            std::find_if(machineAxes_.begin(), machineAxes_.end(),
+                         [&command](const Axis* axis) { return &axis->traits() == command.axis; });
         if (found == machineAxes_.end()) {
             report(command.id, {CommandPhase::Error, ErrorId::NullReference});
             return;

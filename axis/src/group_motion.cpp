@@ -88,9 +88,9 @@ void GroupMotion::brake(const Dynamics& dynamics, bool byAxes) noexcept {
     if (course_ == Course::Path || course_ == Course::BrakePath) {
         std::array<planner::PathAxisLimits, MaxGroupAxes> limits{};
         for (std::size_t i = 0; i < axes_; ++i) {
-            const planner::Limits l = brakeLimits(i, {{}, {}, core::Acceleration{planner::unlimited},
-                                                      core::Jerk{planner::unlimited}},
-                                                  byAxes);
+            const planner::Limits l = brakeLimits(
+                i, {{}, {}, core::Acceleration{planner::unlimited}, core::Jerk{planner::unlimited}},
+                byAxes);
             limits[i] = {l.maxVelocity, l.maxAcceleration, l.jerk};
         }
         planner::PathFeed feed;
@@ -116,10 +116,13 @@ void GroupMotion::brake(const Dynamics& dynamics, bool byAxes) noexcept {
         };
         // A stop too gentle for a software limit is made as hard as the axis may.
         if (!stop.ok() || outside(stop.value())) {
-            const auto hard = planner::planStop(
-                states_[i], brakeLimits(i, {{}, {}, core::Acceleration{planner::unlimited},
-                                            core::Jerk{planner::unlimited}},
-                                        true));
+            const auto hard =
+                planner::planStop(states_[i], brakeLimits(i,
+                                                          {{},
+                                                           {},
+                                                           core::Acceleration{planner::unlimited},
+                                                           core::Jerk{planner::unlimited}},
+                                                          true));
             if (hard.ok()) stop = hard;
         }
         stops_[i] = stop.ok() ? stop.value() : planner::Profile::holding(states_[i]);

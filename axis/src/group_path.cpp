@@ -115,17 +115,15 @@ void Group::takePlan() noexcept {
         return;
     }
     if (view_.cycle < due_) return;
-    const bool inTime = extends_ != nullptr
-                            ? motion_.path() == extends_ && motion_.index() == from_
-                            : motion_.resting();
+    const bool inTime = extends_ != nullptr ? motion_.path() == extends_ && motion_.index() == from_
+                                            : motion_.resting();
     asked_ = false;
     if (!inTime) {
         // Too late to go on from there: asked for again, further on.
         planner_.discard();
         for (std::size_t i = 0; i < planner_.order().items.size(); ++i) {
             for (std::size_t k = 0; k < queue_.size(); ++k) {
-                if (queue_[k].serial == planner_.order().items[i].serial)
-                    queue_[k].planned = false;
+                if (queue_[k].serial == planner_.order().items[i].serial) queue_[k].planned = false;
             }
         }
         return;

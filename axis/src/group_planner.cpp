@@ -40,7 +40,8 @@ planner::Transition jointTo(const GroupCommand& command, core::Velocity before) 
     if (asked.mode == TransitionMode::MaxCornerDeviation)
         joint.mode = planner::TransitionMode::CornerDeviation;
     joint.velocity = jointVelocity(command.bufferMode, before, command.dynamics.velocity);
-    if (asked.velocity > core::Velocity{}) joint.velocity = std::min(joint.velocity, asked.velocity);
+    if (asked.velocity > core::Velocity{})
+        joint.velocity = std::min(joint.velocity, asked.velocity);
     return joint;
 }
 

@@ -35,8 +35,7 @@ core::Result<CommandId, ErrorId> GroupPort::submit(const GroupCommand& request) 
     if (doneAtOnce(view_, command)) phase = CommandPhase::Done;
     if (clearsOthers(view_, command)) book_.abortPending();
     if (command.kind != GroupCommandKind::ReleaseStop) {
-        const bool takesMotion =
-            isMotion(command.kind) || command.kind == GroupCommandKind::Stop;
+        const bool takesMotion = isMotion(command.kind) || command.kind == GroupCommandKind::Stop;
         command.id = book_.add(phase, takesMotion);
     }
     noteAccepted(view_, command);

@@ -21,7 +21,7 @@ struct Span {
 /// The direction (c, s) lies on the way from 0 to the end of the arc.
 bool passes(double c, double s, double endCosine, double endSine, double angle) noexcept {
     constexpr double HalfTurn = 3.141592653589793;
-    const double fromStart = s;                              // cross product with (1, 0)
+    const double fromStart = s;                        // cross product with (1, 0)
     const double toEnd = c * endSine - s * endCosine;  // with the end
     if (angle <= HalfTurn) return fromStart >= 0.0 && toEnd >= 0.0;
     return !(fromStart < 0.0 && toEnd < 0.0);
@@ -38,8 +38,7 @@ Span spanOf(const PathElement& arc, std::size_t axis) noexcept {
     double endCosine = 0.0;
     double endSine = 0.0;
     for (std::size_t i = 0; i < CartesianAxes; ++i) {
-        const double radial =
-            arc.to[i].count() - arc.slope[i] * arc.length - arc.centre[i];
+        const double radial = arc.to[i].count() - arc.slope[i] * arc.length - arc.centre[i];
         endCosine += radial * arc.u[i] / arc.radius;
         endSine += radial * arc.w[i] / arc.radius;
     }

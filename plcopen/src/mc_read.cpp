@@ -42,7 +42,8 @@ void MC_ReadStatus::operator()(axis::AxisRef axis) noexcept {
 }
 
 void MC_ReadActualPosition::operator()(axis::AxisRef axis) noexcept {
-    const AxisView* const view = read(axis, [](const AxisView& seen) noexcept { return seen.inputsValid; });
+    const AxisView* const view =
+        read(axis, [](const AxisView& seen) noexcept { return seen.inputsValid; });
     Position = view != nullptr ? view->folded(view->actual).count() : 0.0;
 }
 

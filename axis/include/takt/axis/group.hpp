@@ -112,20 +112,20 @@ private:
     GroupQueue queue_;
     CommandEvents events_;
     std::uint32_t serial_{0};
-    std::uint32_t commands_{0};   ///< motion commands that have taken control
-    bool frontActive_{false};     ///< the first of the queue has control
-    bool joined_{false};          ///< the members follow
-    bool disabling_{false};       ///< GroupStopping ends in GroupDisabled
+    std::uint32_t commands_{0};  ///< motion commands that have taken control
+    bool frontActive_{false};    ///< the first of the queue has control
+    bool joined_{false};         ///< the members follow
+    bool disabling_{false};      ///< GroupStopping ends in GroupDisabled
     CommandId disable_{CommandId::None};
     core::FixedVector<CommandId, 8> resets_{};
     core::Jerk jerk_{};
     // The plan asked for.
-    bool asked_{false};           ///< … and still wanted
+    bool asked_{false};  ///< … and still wanted
     bool planLate_{false};
     std::uint64_t due_{0};
     const planner::PathMotion* extends_{nullptr};
     std::uint64_t from_{0};
-    std::uint32_t pathEnd_{0};    ///< serial of the last motion on the path that runs
+    std::uint32_t pathEnd_{0};  ///< serial of the last motion on the path that runs
     std::uint32_t latePlans_{0};
 };
 

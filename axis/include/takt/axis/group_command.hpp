@@ -65,8 +65,8 @@ struct GroupCommand {
     GroupCommandKind kind{GroupCommandKind::Halt};
     BufferMode bufferMode{BufferMode::Aborting};
     CoordSystem coordSystem{CoordSystem::Acs};
-    bool relative{false};            ///< points count from where the command begins
-    std::uint8_t place{0};           ///< AddAxis (0 = the next free one), RemoveAxis; from 1
+    bool relative{false};             ///< points count from where the command begins
+    std::uint8_t place{0};            ///< AddAxis (0 = the next free one), RemoveAxis; from 1
     const AxisTraits* axis{nullptr};  ///< AddAxis
     Dynamics dynamics{};
     Transition transition{};

@@ -10,6 +10,7 @@
 #include <takt/core/job_slot.hpp>
 #include <takt/core/time.hpp>
 #include <takt/planner/path_planner.hpp>
+#include <utility>
 #include <vector>
 
 namespace takt::axis {
@@ -51,7 +52,12 @@ public:
     [[nodiscard]] bool finished() const noexcept { return slot_.done(); }
     /// \pre free()
     [[nodiscard]] Order& order() noexcept { return order_; }
-    void ask() noexcept { slot_.want(); }
+    void ask() noexcept {
+        called_ = true;
+        slot_.want();
+    }
+    /// Something has been asked for since the last call.
+    [[nodiscard]] bool takeCall() noexcept { return std::exchange(called_, false); }
     /// \pre finished()
     [[nodiscard]] const Plan& plan() const noexcept { return plan_; }
     /// The plan's motion is run from now on; the one before it will be written over.
@@ -72,6 +78,7 @@ private:
 
     core::Duration cycle_;
     core::JobSlot slot_;
+    bool called_{false};
     Order order_{};
     Plan plan_{};
     // Of the side that computes.

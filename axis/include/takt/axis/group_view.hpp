@@ -37,11 +37,11 @@ struct GroupView {
     const GroupTraits* traits{nullptr};
     CommandId active{CommandId::None};  ///< the command in control
     GroupState state{GroupState::Disabled};
-    bool stopDone{false};     ///< GroupStopping at rest
-    bool stopReleased{true};  ///< GroupStopping ends at rest
-    bool endKnown{true};      ///< `end` is what the next buffered command starts from
-    bool pathLast{false};     ///< the last accepted motion is one that can be blended
-    std::uint8_t queued{0};   ///< accepted, and not in control yet
+    bool stopDone{false};           ///< GroupStopping at rest
+    bool stopReleased{true};        ///< GroupStopping ends at rest
+    bool endKnown{true};            ///< `end` is what the next buffered command starts from
+    bool pathLast{false};           ///< the last accepted motion is one that can be blended
+    std::uint8_t queued{0};         ///< accepted, and not in control yet
     ErrorId hurdle{ErrorId::None};  ///< why no motion can begin from GroupStandby
     ErrorId claim{ErrorId::None};   ///< why the group cannot be enabled
     /// The axes by place; null = empty. Their limits are those of the axes.

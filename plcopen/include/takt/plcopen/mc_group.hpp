@@ -88,8 +88,8 @@ private:
 /// Stops the group on its path; any other motion command of the group may follow meanwhile.
 class MC_GroupHalt : public GroupMotionBlock {
 public:
-    double Deceleration{0.0};  ///< u/s², 0 = the group's
-    double Jerk{0.0};          ///< u/s³, 0 = the group's
+    double Deceleration{0.0};                               ///< u/s², 0 = the group's
+    double Jerk{0.0};                                       ///< u/s³, 0 = the group's
     MC_BUFFER_MODE BufferMode{MC_BUFFER_MODE::mcAborting};  ///< mcAborting or mcBuffered
 
     bool Done{false};
