@@ -15,8 +15,8 @@ struct FeedState {
     double s3{0.0};
 };
 
-/// A stretch of feed on which s1^2 is a quadratic of s (then s'' = bend * (s - from.s) + from.s2),
-/// or, where it begins or ends at rest, of constant jerk.
+/// A stretch of feed on which s1^2 is a quadratic of s, so s2 = from.s2 + bend * (s - from.s), or
+/// of constant jerk.
 struct FeedPiece {
     double start;  ///< seconds
     double duration;
@@ -24,6 +24,9 @@ struct FeedPiece {
     double bend;  ///< 1/s^2; not used with constant jerk
     bool constantJerk;
 };
+
+/// rt. The state `time` seconds after the beginning of a piece.
+[[nodiscard]] FeedState evaluate(const FeedPiece& piece, double time) noexcept;
 
 /// The feed along a path as pieces in time: s(t), ending at rest. Evaluated once per cycle.
 class FeedProfile {
@@ -36,8 +39,15 @@ public:
     void add(const FeedPiece& piece);
     /// The feed is at rest at `s` from the next whole cycle on.
     void restAt(double s);
-    /// Multiplies every duration from the beginning on. \pre factor >= 1, and it begins at rest
-    void stretch(double factor) noexcept;
+    /// Makes all pieces from `first` on slower. \pre it begins at rest, factor >= 1
+    void stretch(std::size_t first, double factor) noexcept;
+    /// Takes away all pieces from `first` on.
+    void truncate(std::size_t first) noexcept;
+    /// Adds what `other` does from a time on up to where it reaches `until`, which is a stop of it
+    /// or its end; `shift` is subtracted from its places. \pre empty
+    void addRest(const FeedProfile& other, double time, double until, double shift);
+    /// The first whole cycle after the last piece, in seconds: where a next section may begin.
+    [[nodiscard]] double nextStart() const noexcept;
 
     /// rt. The state at a number of cycles after the beginning; at rest at the end of the path
     /// from duration() on. O(log pieces).

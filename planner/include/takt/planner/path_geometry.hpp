@@ -47,6 +47,9 @@ public:
     core::Result<JointKind, PathError> append(const PathElement& element,
                                               double notBefore = 0.0) noexcept;
 
+    /// The end becomes a stop, whatever the last element asks for. \pre elementCount() > 0
+    void stopAtEnd() noexcept { elements_.back().transition.mode = TransitionMode::Stop; }
+
     /// Forgets all pieces that end at or before `s` and begins to count at the first that is left.
     /// \return what is to be subtracted from every s
     double dropBefore(double s) noexcept;
