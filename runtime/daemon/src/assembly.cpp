@@ -51,14 +51,15 @@ std::vector<ProgramHost> loadPrograms(const config::MachineConfig& machine,
             }
             program = std::move(loaded.program);
         }
-        programs.emplace_back(params, std::move(program), machine.axes.size(), number++);
+        programs.emplace_back(params, std::move(program), machine.axes.size(),
+                              machine.groups.size(), number++);
     }
     for (LinkedProgram& rest : linked) {
         program::ProgramParams params;
         params.name = rest.name;
         params.origin = machine.file;
         programs.emplace_back(std::move(params), std::move(rest.program), machine.axes.size(),
-                              number++);
+                              machine.groups.size(), number++);
     }
     return programs;
 }
@@ -67,6 +68,13 @@ void makeAxes(const config::MachineConfig& machine, Axes& axes) {
     for (const axis::AxisParams& params : machine.axes) {
         axes.emplace_back(params, machine.network.cycle);
     }
+}
+
+void makeGroups(const config::MachineConfig& machine, Axes& axes, Groups& groups) {
+    std::vector<axis::Axis*> all;
+    for (axis::Axis& axis : axes) all.push_back(&axis);
+    for (const axis::GroupParams& params : machine.groups)
+        groups.emplace_back(params, all, machine.network.cycle);
 }
 
 axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave) {

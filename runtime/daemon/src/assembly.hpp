@@ -21,6 +21,9 @@ std::vector<ProgramHost> loadPrograms(const config::MachineConfig& machine,
 /// The machine's axes, not yet bound to a bus, at the end of `axes`.
 void makeAxes(const config::MachineConfig& machine, Axes& axes);
 
+/// Its groups of these axes, at the end of `groups`.
+void makeGroups(const config::MachineConfig& machine, Axes& axes, Groups& groups);
+
 /// Where each drive's objects lie in its device's process data.
 axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave);
 

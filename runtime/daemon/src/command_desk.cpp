@@ -123,7 +123,7 @@ CommandDesk::Verdict CommandDesk::stopProgram(const ControlCommand& command) noe
     if (command.target >= parts_.programs.size()) return {.refusal = Refusal::UnknownTarget};
     ProgramHost& program = parts_.programs[command.target];
     if (program.ended()) return {.refusal = Refusal::ProgramEnded};
-    program.hold(parts_.axes);
+    program.hold({parts_.axes, parts_.groups});
     return {};
 }
 

@@ -36,6 +36,7 @@ public:
 
     struct Parts {
         Axes& axes;
+        Groups& groups;
         std::span<ProgramHost> programs;
         MachineStop& machineStop;
         ControlRings& rings;

@@ -75,9 +75,10 @@ std::optional<LoadedMachine> loadMachine(const RunOptions& options,
     std::vector<std::string> problems;
     checkLoad(machine.config, problems);
     makeAxes(machine.config, machine.axes);
+    makeGroups(machine.config, machine.axes, machine.groups);
     machine.programs = loadPrograms(machine.config, std::move(linked), problems);
     for (ProgramHost& program : machine.programs) {
-        for (const std::string& text : program.start(machine.axes, machine.config.network.cycle)) {
+        for (const std::string& text : program.start(machine.config)) {
             problems.push_back(fmt::format("{}: error: {}", program.origin(), text));
         }
     }

@@ -30,6 +30,7 @@ public:
         const config::MachineConfig& machine;
         fieldbus::ethercat::Master& master;
         Axes& axes;
+        Groups& groups;
         std::span<ProgramHost> programs;
     };
     /// \param replay commands of a file, in the order of their cycles
@@ -52,6 +53,7 @@ private:
         fieldbus::ethercat::NetworkState network{};
         StopRecord stop{};
         std::vector<axis::AxisState> axes;
+        std::vector<axis::GroupState> groups;
         struct ProgramSeen {
             ProgramPhase phase{};
             bool held{false};
@@ -63,6 +65,7 @@ private:
     void watchFaults(core::CycleNumber cycle) noexcept;
     void publishStatus(core::CycleNumber cycle, const CycleOrders& orders) noexcept;
     void noteChanges(core::CycleNumber cycle) noexcept;
+    void noteMovers(core::CycleNumber cycle) noexcept;
 
     Parts parts_;
     ControlNames names_;

@@ -10,17 +10,20 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
     parts_.master.exchange(beat.number);
     const core::HostTime replied = parts_.clock.now();
     followReferenceClock(beat);
-    for (axis::Axis& axis : parts_.axes) axis.readInputs(beat.number);
+    const Movers& movers = parts_.movers;
+    for (axis::Axis& axis : movers.axes) axis.readInputs(beat.number);
+    for (axis::Group& group : movers.groups) group.readMembers(beat.number);
     parts_.control.beforePrograms(beat.number, orders);
     if (orders.runPrograms) {
-        for (ProgramHost& program : parts_.programs) program.cycle(beat.number, parts_.axes);
+        for (ProgramHost& program : parts_.programs) program.cycle(beat.number, movers);
     }
     parts_.control.afterPrograms(beat.number, orders);
     const core::HostTime computed = parts_.clock.now();
-    for (axis::Axis& axis : parts_.axes) axis.step();
-    for (axis::Axis& axis : parts_.axes) axis.writeOutputs();
+    for (axis::Group& group : movers.groups) group.step();
+    for (axis::Axis& axis : movers.axes) axis.step();
+    for (axis::Axis& axis : movers.axes) axis.writeOutputs();
     parts_.master.prepare();
-    parts_.recorders.row(beat.number, parts_.axes);
+    parts_.recorders.row(beat.number, movers);
     parts_.control.publish(beat.number, orders);
     keepBooks(beat, replied, computed);
 }

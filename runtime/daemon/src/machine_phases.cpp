@@ -13,10 +13,22 @@ void MachineRun::oneCycle() noexcept {
     const scheduler::Beat beat = grid_.wait(bus_.clock());
     bus_.beginCycle(beat.number);
     cycle_.run(beat, orders_);
+    planPaths();
     now_ = beat.number + 1;
     const core::CycleGuard guard;
     superviseOverruns(beat);
     supervise();
+}
+
+/// Jobs: in virtual time between the cycles, on a machine on a thread of their own.
+void MachineRun::planPaths() noexcept {
+    if (planning_) {
+        planning_->wakeIfWanted();
+        return;
+    }
+    for (axis::Group& group : groups_) {
+        if (group.planner().wanted()) group.planner().work();
+    }
 }
 
 void MachineRun::supervise() noexcept {

@@ -64,17 +64,25 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       recorders_{recorders},
       console_{console},
       axes_{machine.axes},
+      groups_{machine.groups},
       programs_{machine.programs},
       noted_(programs_.size(), false),
       bus_{machine_, endFor(options, machine_), recorders.capture()},
       dcLock_{lockFor(options, machine_), machine_.network.cycle},
       grid_{core::HostTime{}, machine_.network.cycle},
       overruns_{machine_.scheduler.overruns},
-      control_{{machine_, bus_.master(), axes_, programs_},
+      control_{{machine_, bus_.master(), axes_, groups_, programs_},
                machine.commands,
                !options.recordCommands.empty()},
       server_{{machine_, programs_, control_}, options.socket, options.recordCommands},
-      cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, control_, bus_.clock(),
+      cycle_{{bus_.master(),
+              {axes_, groups_},
+              programs_,
+              grid_,
+              dcLock_,
+              recorders_,
+              control_,
+              bus_.clock(),
               machine_.network.cycle}},
       pace_{!options.fast && options.interface.empty()},
       notices_{NoticeRoom},
@@ -167,6 +175,11 @@ void MachineRun::runOnThreads() {
             ThreadPlace{"takt-" + program.name(), std::max(params.priority - 1, 0), params.cpu},
             CallBudget{core::Duration{budget}, lenient}, bus_.clock(), notes));
     }
+    if (!groups_.empty()) {
+        // Below the programs, so that a long plan keeps nobody from his cycle.
+        planning_ = std::make_unique<PlanningThread>(
+            ThreadPlace{"takt-plan", std::max(params.priority - 2, 0), -1}, groups_, notes);
+    }
     std::atomic<bool> go{false};
     RealtimeThread thread{{"takt-cycle", params.priority, params.cpu},
                           [this, &go] {
@@ -186,6 +199,7 @@ void MachineRun::runOnThreads() {
         std::this_thread::sleep_for(HouseInterval);
     }
     thread.join();
+    planning_.reset();
     keepHouse(true);
 }
 
@@ -211,7 +225,8 @@ void MachineRun::conclude() {
             fmt::format("{}: not complete; is the disk full?", options_.recordCommands.string()));
         if (code_ == ExitCode::Good) code_ = ExitCode::CouldNotRun;
     }
-    if (reporter_.tellAxisErrors(axes_) && code_ == ExitCode::Good) code_ = ExitCode::MachineFault;
+    if (reporter_.tellErrors({axes_, groups_}) && code_ == ExitCode::Good)
+        code_ = ExitCode::MachineFault;
     const double simulated = static_cast<double>(now_) * seconds(machine_.network.cycle);
     const double wall = seconds(pace_.elapsed());
     const auto counters = bus_.master().counters();
@@ -234,6 +249,11 @@ void MachineRun::tellStatistics() {
         overruns_.skipped(), overruns_.overruns(), statistics.missedBy[0], statistics.missedBy[1],
         statistics.missedBy[2], statistics.missedBy[3], dcLock_.relocks()));
     for (const std::string& line : describe(statistics)) console_.line(line);
+    for (const axis::Group& group : groups_) {
+        if (group.status().latePlans == 0) continue;
+        console_.line(fmt::format("warning: group {}: {} plans came late; more latency helps",
+                                  group.name(), group.status().latePlans));
+    }
 }
 
 std::string MachineRun::summary() const {

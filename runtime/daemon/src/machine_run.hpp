@@ -15,6 +15,7 @@
 #include "machine_control.hpp"
 #include "machine_cycle.hpp"
 #include "pace.hpp"
+#include "planning_thread.hpp"
 #include "program_watchdog.hpp"
 #include "realtime_thread.hpp"
 #include "run_notice.hpp"
@@ -59,6 +60,7 @@ private:
     // rt, after each cycle.
     void oneCycle() noexcept;
     void supervise() noexcept;
+    void planPaths() noexcept;
     void superviseOverruns(const scheduler::Beat& beat) noexcept;
     void superviseGoingOp() noexcept;
     void superviseOperating() noexcept;
@@ -80,6 +82,7 @@ private:
     Console& console_;
     StopRequest stop_;
     Axes& axes_;
+    Groups& groups_;
     std::vector<ProgramHost>& programs_;
     std::vector<bool> noted_;  ///< programs whose end has been noted
     Bus bus_;
@@ -100,7 +103,8 @@ private:
     ExitCode code_{ExitCode::Good};
     bool quickStopped_{false};
     bool stopTimedOut_{false};
-    bool stopNoted_{false};  ///< the present machine stop has been noted
+    bool stopNoted_{false};                     ///< the present machine stop has been noted
+    std::unique_ptr<PlanningThread> planning_;  ///< on a machine
     std::atomic<bool> over_{false};
 };
 

@@ -25,7 +25,7 @@ public:
     Recorders(const RunOptions& options, const config::MachineConfig& machine);
 
     /// rt. One row of the trace.
-    void row(core::CycleNumber cycle, const Axes& axes) noexcept;
+    void row(core::CycleNumber cycle, const Movers& movers) noexcept;
     /// Outside the cycle: hands to the files what the cycle has left in the rings.
     void drain();
     /// Writes the rest and the plot. \return one line for each file that could not be completed
@@ -39,6 +39,7 @@ private:
     core::Duration cycle_;
     std::filesystem::path plotPath_;
     std::vector<record::MotionAxis> motionAxes_;
+    std::vector<record::MotionGroup> motionGroups_;
     std::unique_ptr<record::TraceRecorder> trace_;
     std::unique_ptr<record::OutputFile> csvFile_;
     std::unique_ptr<record::CsvTrace> csv_;

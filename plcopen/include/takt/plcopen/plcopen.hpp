@@ -2,6 +2,9 @@
 
 /// All function blocks.
 #include <takt/plcopen/enums.hpp>
+#include <takt/plcopen/mc_group.hpp>
+#include <takt/plcopen/mc_group_move.hpp>
+#include <takt/plcopen/mc_group_read.hpp>
 #include <takt/plcopen/mc_home.hpp>
 #include <takt/plcopen/mc_jog.hpp>
 #include <takt/plcopen/mc_move.hpp>

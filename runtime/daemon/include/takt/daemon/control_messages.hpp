@@ -40,6 +40,16 @@ struct AxisReport {
     std::string holder{};  ///< program that holds it; empty = none
 };
 
+struct GroupReport {
+    std::string name{};
+    std::string unit{};  ///< of path length
+    std::string state{};
+    double path{0.0};      ///< length travelled on paths so far
+    double velocity{0.0};  ///< along the path
+    std::uint64_t queued{0};
+    std::string error{};  ///< in words; empty = none
+};
+
 struct WatchReport {
     std::string name{};
     double value{0.0};
@@ -65,6 +75,7 @@ struct StatusReport {
     std::string machineStop{};  ///< its cause; empty = not stopped
     std::string owner{};        ///< who operates; empty = nobody
     std::vector<AxisReport> axes;
+    std::vector<GroupReport> groups;
     std::vector<ProgramReport> programs;
 };
 

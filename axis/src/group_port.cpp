@@ -1,0 +1,46 @@
+#include <takt/axis/group_admit.hpp>
+#include <takt/axis/group_port.hpp>
+
+namespace takt::axis {
+
+namespace {
+
+/// This command ends whatever has control or waits.
+bool clearsOthers(const GroupView& view, const GroupCommand& command) noexcept {
+    switch (command.kind) {
+        case GroupCommandKind::Stop:
+        case GroupCommandKind::Disable:
+        case GroupCommandKind::UngroupAll:
+            return true;
+        default:
+            return isMotion(command.kind) && !mustQueue(view, command);
+    }
+}
+
+}  // namespace
+
+core::Result<CommandId, ErrorId> GroupPort::submit(const GroupCommand& request) noexcept {
+    if (view_.traits == nullptr) return ErrorId::NullReference;  // never opened by a group
+    if (request.bufferMode != BufferMode::Aborting && book_.pending(request.replaces)) {
+        return ErrorId::InstanceBusy;
+    }
+    const auto admitted = admit(view_, request);
+    if (!admitted.ok()) return admitted.error();
+    if (commands_.full()) return ErrorId::BufferFull;
+
+    GroupCommand command = admitted.value();
+    // A path is planned first: until then its command is accepted, and not in control.
+    CommandPhase phase = CommandPhase::Active;
+    if (isPath(command.kind) || mustQueue(view_, command)) phase = CommandPhase::Queued;
+    if (doneAtOnce(view_, command)) phase = CommandPhase::Done;
+    if (clearsOthers(view_, command)) book_.abortPending();
+    if (command.kind != GroupCommandKind::ReleaseStop) {
+        const bool takesMotion = isMotion(command.kind) || command.kind == GroupCommandKind::Stop;
+        command.id = book_.add(phase, takesMotion);
+    }
+    noteAccepted(view_, command);
+    commands_.push(command);
+    return command.id;
+}
+
+}  // namespace takt::axis

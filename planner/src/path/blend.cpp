@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <cmath>
+#include <takt/planner/path_blend.hpp>
+
+namespace takt::planner {
+
+namespace {
+
+using Coefficients = std::array<double, 6>;
+
+/// Value and derivatives of a polynomial of fifth degree.
+struct Taylor {
+    double f;
+    double f1;
+    double f2;
+    double f3;
+};
+
+Taylor taylor(const Coefficients& c, double u) noexcept {
+    return {c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5])))),
+            c[1] + u * (2.0 * c[2] + u * (3.0 * c[3] + u * (4.0 * c[4] + u * 5.0 * c[5]))),
+            2.0 * c[2] + u * (6.0 * c[3] + u * (12.0 * c[4] + u * 20.0 * c[5])),
+            6.0 * c[3] + u * (24.0 * c[4] + u * 60.0 * c[5])};
+}
+
+struct End {
+    double f;
+    double f1;
+    double f2;
+};
+
+/// The polynomial on [0, 1] with these ends.
+Coefficients hermite(const End& from, const End& to) noexcept {
+    const double d = to.f - from.f - from.f1 - 0.5 * from.f2;
+    const double d1 = to.f1 - from.f1 - from.f2;
+    const double d2 = to.f2 - from.f2;
+    return {from.f,
+            from.f1,
+            0.5 * from.f2,
+            10.0 * d - 4.0 * d1 + 0.5 * d2,
+            -15.0 * d + 7.0 * d1 - d2,
+            6.0 * d - 3.0 * d1 + 0.5 * d2};
+}
+
+/// The contour, and the axes first..last-1 in which it is measured.
+class Curve {
+public:
+    Curve(const PathElement& before, const PathElement& after, double reach) noexcept
+        : first_{hasCartesianMotion(before) ? 0 : before.space.cartesian},
+          last_{hasCartesianMotion(before) ? before.space.cartesian : before.space.axes} {
+        PathDerivatives from;
+        PathDerivatives to;
+        planner::evaluate(before, before.length - reach, from);
+        planner::evaluate(after, reach, to);
+        // The first derivatives are those of the cubic with both inner points in the corner; the
+        // second are its own plus what the curvatures of the elements ask for.
+        const double speed = 3.0 * reach;
+        for (std::size_t i = 0; i < before.space.axes; ++i) {
+            const double corner = before.to[i].count();
+            const double bend = 2.0 * speed;
+            curve_[i] = hermite(
+                {from.q[i] - corner, speed * from.d1[i],
+                 speed * speed * from.d2[i] - bend * from.d1[i]},
+                {to.q[i] - corner, speed * to.d1[i], speed * speed * to.d2[i] + bend * to.d1[i]});
+        }
+    }
+
+    [[nodiscard]] const auto& coefficients() const noexcept { return curve_; }
+
+    [[nodiscard]] double speed(double u) const noexcept {
+        double sum = 0.0;
+        for (std::size_t i = first_; i < last_; ++i) {
+            const double d = taylor(curve_[i], u).f1;
+            sum += d * d;
+        }
+        return std::sqrt(sum);
+    }
+
+    [[nodiscard]] double distance(double u) const noexcept {
+        double sum = 0.0;
+        for (std::size_t i = first_; i < last_; ++i) {
+            const double d = taylor(curve_[i], u).f;
+            sum += d * d;
+        }
+        return std::sqrt(sum);
+    }
+
+    /// u as a function of the length, and its derivatives.
+    [[nodiscard]] End inverseAt(double u) const noexcept {
+        double n2 = 0.0;
+        double dot = 0.0;
+        for (std::size_t i = first_; i < last_; ++i) {
+            const Taylor t = taylor(curve_[i], u);
+            n2 += t.f1 * t.f1;
+            dot += t.f1 * t.f2;
+        }
+        return {u, 1.0 / std::sqrt(n2), -dot / (n2 * n2)};
+    }
+
+    /// Five points of Gauss and Legendre.
+    [[nodiscard]] double lengthBetween(double from, double to) const noexcept {
+        constexpr std::array<double, 3> kNode{0.0, 0.53846931010568309104, 0.90617984593866399280};
+        constexpr std::array<double, 3> kWeight{0.56888888888888888889, 0.47862867049936646804,
+                                                0.23692688505618908751};
+        const double centre = 0.5 * (from + to);
+        const double half = 0.5 * (to - from);
+        double sum = kWeight[0] * speed(centre);
+        for (std::size_t k = 1; k < kNode.size(); ++k) {
+            const double d = half * kNode[k];
+            sum += kWeight[k] * (speed(centre - d) + speed(centre + d));
+        }
+        return half * sum;
+    }
+
+    [[nodiscard]] double closest() const noexcept;
+
+private:
+    std::size_t first_;
+    std::size_t last_;
+    std::array<Coefficients, maxPathAxes> curve_{};
+};
+
+double Curve::closest() const noexcept {
+    constexpr int kCoarse = 32;
+    int best = 0;
+    for (int k = 1; k <= kCoarse; ++k) {
+        if (distance(k / static_cast<double>(kCoarse)) <
+            distance(best / static_cast<double>(kCoarse)))
+            best = k;
+    }
+    double low = std::max(0, best - 1) / static_cast<double>(kCoarse);
+    double high = std::min(kCoarse, best + 1) / static_cast<double>(kCoarse);
+    for (int k = 0; k < 40; ++k) {
+        const double third = (high - low) / 3.0;
+        if (distance(low + third) < distance(high - third)) {
+            high -= third;
+        } else {
+            low += third;
+        }
+    }
+    return distance(0.5 * (low + high));
+}
+
+/// Lengths of the curve up to equal steps of u.
+constexpr std::size_t kMeasures = 96;
+
+using Lengths = std::array<double, kMeasures + 1>;
+
+double stepOf(std::size_t k) noexcept {
+    return static_cast<double>(k) / static_cast<double>(kMeasures);
+}
+
+Lengths measure(const Curve& curve) noexcept {
+    Lengths lengths{};
+    for (std::size_t k = 0; k < kMeasures; ++k)
+        lengths[k + 1] = lengths[k] + curve.lengthBetween(stepOf(k), stepOf(k + 1));
+    return lengths;
+}
+
+/// The u at which the curve is `s` long.
+double parameterAt(const Curve& curve, const Lengths& lengths, double s) noexcept {
+    std::size_t k = 0;
+    while (k + 1 < kMeasures && lengths[k + 1] <= s) ++k;
+    const double share = (s - lengths[k]) / (lengths[k + 1] - lengths[k]);
+    double u = stepOf(k) + share / static_cast<double>(kMeasures);
+    for (int i = 0; i < 6; ++i) {
+        const double off = lengths[k] + curve.lengthBetween(stepOf(k), u) - s;
+        u = std::clamp(u - off / curve.speed(u), stepOf(k), stepOf(k + 1));
+    }
+    return u;
+}
+
+bool isLinePair(const PathElement& before, const PathElement& after) noexcept {
+    return before.kind == ElementKind::Line && after.kind == ElementKind::Line;
+}
+
+}  // namespace
+
+PathBlend::PathBlend(const PathElement& before, const PathElement& after, double reach) noexcept
+    : space_{before.space}, corner_{before.to}, reach_{reach} {
+    const Curve curve{before, after, reach};
+    curve_ = curve.coefficients();
+    const Lengths lengths = measure(curve);
+    length_ = lengths[kMeasures];
+    const double span = length_ / static_cast<double>(kSpans);
+    End from = curve.inverseAt(0.0);
+    for (std::size_t k = 0; k < kSpans; ++k) {
+        const bool last = k + 1 == kSpans;
+        const double u =
+            last ? 1.0 : parameterAt(curve, lengths, span * static_cast<double>(k + 1));
+        const End to = curve.inverseAt(u);
+        parameter_[k] = hermite({from.f, from.f1 * span, from.f2 * span * span},
+                                {to.f, to.f1 * span, to.f2 * span * span});
+        from = to;
+    }
+}
+
+void PathBlend::evaluate(double s, PathDerivatives& out) const noexcept {
+    const double perSpan = static_cast<double>(kSpans) / length_;
+    const double place = std::clamp(s * perSpan, 0.0, static_cast<double>(kSpans));
+    const std::size_t k = std::min(static_cast<std::size_t>(place), kSpans - 1);
+    const Taylor u = taylor(parameter_[k], place - static_cast<double>(k));
+    const double u1 = u.f1 * perSpan;
+    const double u2 = u.f2 * perSpan * perSpan;
+    const double u3 = u.f3 * perSpan * perSpan * perSpan;
+    for (std::size_t i = 0; i < space_.axes; ++i) {
+        const Taylor b = taylor(curve_[i], u.f);
+        out.q[i] = corner_[i].count() + b.f;
+        out.d1[i] = b.f1 * u1;
+        out.d2[i] = b.f2 * u1 * u1 + b.f1 * u2;
+        out.d3[i] = b.f3 * u1 * u1 * u1 + 3.0 * b.f2 * u1 * u2 + b.f1 * u3;
+    }
+}
+
+double deviationOf(const PathElement& before, const PathElement& after, double reach) noexcept {
+    return Curve{before, after, reach}.closest();
+}
+
+double reachForDeviation(const PathElement& before, const PathElement& after, double deviation,
+                         double most) noexcept {
+    if (isLinePair(before, after)) {
+        // At u = 1/2 the cubic is c (q2' - q1') / 8 away from the corner.
+        const bool cartesian = hasCartesianMotion(before);
+        const std::size_t first = cartesian ? 0 : before.space.cartesian;
+        const std::size_t last = cartesian ? before.space.cartesian : before.space.axes;
+        double turn = 0.0;
+        for (std::size_t i = first; i < last; ++i) {
+            const double d = after.slope[i] - before.slope[i];
+            turn += d * d;
+        }
+        const double reach = 8.0 * deviation / std::sqrt(turn);
+        return reach < most ? reach : most;
+    }
+    if (deviationOf(before, after, most) <= deviation) return most;
+    double low = 0.0;
+    double high = most;
+    for (int k = 0; k < 50; ++k) {
+        const double middle = 0.5 * (low + high);
+        (deviationOf(before, after, middle) <= deviation ? low : high) = middle;
+    }
+    return low;
+}
+
+}  // namespace takt::planner
