@@ -113,12 +113,14 @@ void Drawing::shape(const TopViewShape& shape, double grown, std::string_view cs
 }
 
 void Drawing::label(const TopViewShape& shape) {
-    const double x = shape.circle ? shape.circle->x
-                                  : 0.5 * (std::max(shape.left, spec_.x.low) +
-                                           std::min(shape.right, spec_.x.high));
-    const double y = shape.circle ? shape.circle->y
-                                  : 0.5 * (std::max(shape.bottom, spec_.y.low) +
-                                           std::min(shape.top, spec_.y.high));
+    const double x =
+        shape.circle
+            ? shape.circle->x
+            : 0.5 * (std::max(shape.left, spec_.x.low) + std::min(shape.right, spec_.x.high));
+    const double y =
+        shape.circle
+            ? shape.circle->y
+            : 0.5 * (std::max(shape.bottom, spec_.y.low) + std::min(shape.top, spec_.y.high));
     text(px(x), py(y) + 4.0, "key", "middle", shape.label);
 }
 
@@ -166,8 +168,8 @@ std::string Drawing::draw() {
     const std::string size = "width=\"" + pixel(wide) + "\" height=\"" + pixel(high) + '"';
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg "
            "xmlns=\"http://www.w3.org/2000/svg\" " +
-           size + " viewBox=\"0 0 " + pixel(wide) + ' ' + pixel(high) + "\">\n" + Style +
-           "<rect " + size + " fill=\"#fcfcfc\"/>\n" + out_ + "</svg>\n";
+           size + " viewBox=\"0 0 " + pixel(wide) + ' ' + pixel(high) + "\">\n" + Style + "<rect " +
+           size + " fill=\"#fcfcfc\"/>\n" + out_ + "</svg>\n";
 }
 
 }  // namespace
