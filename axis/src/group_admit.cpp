@@ -183,9 +183,10 @@ ErrorId admitMotion(const GroupView& view, GroupCommand& command) noexcept {
     const ErrorId bad = command.kind == Kind::MoveDirect ? settleDirect(command)
                                                          : settlePath(view.traits->limits, command);
     if (bad != ErrorId::None) return bad;
-    if (mustQueue(view, command) && view.queued >= view.traits->queueDepth) {
-        return ErrorId::BufferFull;
-    }
+    // While its path is planned the motion in control still counts as queued.
+    const bool planned = view.active != CommandId::None;
+    const std::uint32_t depth = view.traits->queueDepth + (planned ? 0U : 1U);
+    if (mustQueue(view, command) && view.queued >= depth) return ErrorId::BufferFull;
     return command.kind == Kind::Halt ? ErrorId::None : settlePoints(view, command);
 }
 

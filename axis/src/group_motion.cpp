@@ -139,7 +139,7 @@ void GroupMotion::step() noexcept {
         case Course::Path:
             ++index_;
             stepPath(path_->feed.at(index_));
-            if (index_ >= path_->feed.cycles()) rest();
+            if (index_ >= path_->feed.cycles()) arrive();
             return;
         case Course::BrakePath:
             stepPath(brake_.step());
@@ -160,6 +160,14 @@ void GroupMotion::stepPath(const FeedState& next) noexcept {
     for (std::size_t i = 0; i < axes_; ++i) {
         states_[i] = {states[i].position, states[i].velocity, states[i].acceleration};
     }
+}
+
+/// The end of the path is exactly what was programmed, without the rounding of the way to it.
+void GroupMotion::arrive() noexcept {
+    const planner::PathGeometry& path = path_->geometry;
+    const planner::PathPoint& end = path.element(path.elementCount() - 1).to;
+    for (std::size_t i = 0; i < axes_; ++i) states_[i].position = end[i];
+    rest();
 }
 
 void GroupMotion::stepDirect() noexcept {

@@ -132,7 +132,7 @@ void GroupPlanner::makePlan(const GroupPoint& end) {
 core::Result<std::uint64_t, planner::PathError> GroupPlanner::planElements() {
     planner::PathMotion& out = *motions_[spare_];
     if (order_.running == nullptr) return planner_->plan(elements_, out);
-    return planner_->extend(*order_.running, order_.from, joint_, elements_, out);
+    return planner_->extend(*order_.running, order_.from, elements_, out, joint_);
 }
 
 }  // namespace takt::axis

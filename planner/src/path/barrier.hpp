@@ -8,11 +8,11 @@
 
 namespace takt::planner::detail {
 
-/// The fastest feed x(s) on a section by an interior-point method: Newton steps on the duration
-/// plus a barrier in front of every limit. All limits are linear in the coefficients but the jerk's
-/// |L(x, x', x'')| <= J / sqrt(x), whose right side is replaced by its tangent at the present
-/// iterate. It lies below the curve, so every iterate keeps all limits, and the duration falls.
-/// The matrix has five diagonals: a step costs as much as looking at all limits once.
+/// The fastest feed x(s) on a section, by a primal-dual interior-point method. All limits are
+/// linear in the coefficients but the jerk's |L(x, x', x'')| <= J / sqrt(x), whose right side is
+/// replaced by its tangent at the present iterate. That lies below the curve, so every iterate
+/// keeps all limits. The matrix has five diagonals: a step costs as much as looking at all limits
+/// once.
 ///
 /// Not to be trusted blindly: what comes out is checked by differences afterwards.
 class BarrierSolver {
@@ -24,27 +24,36 @@ public:
     [[nodiscard]] int steps() const noexcept { return steps_; }
 
 private:
-    /// How far a limit is used: 1 at the limit.
-    [[nodiscard]] double greatestUse(std::span<const double> c) const noexcept;
+    /// What is minimised: weight * duration, or the relaxation, by which all limits are multiplied.
+    struct Goal {
+        double duration;
+        bool relaxing;
+    };
+
+    void prepare(const Section& section, const Grid& grid, const Rows& rows);
     void tieEnds(std::span<double> c) const noexcept;
-    void start() noexcept;
-    void startFromRest() noexcept;
-    void startInMotion() noexcept;
-
-    /// Gradient and matrix at the present coefficients. `relax` multiplies all limits.
-    void assemble(double objective, double barrier, double relax) noexcept;
-    void addRow(const Row& row, double objective, double barrier, double relax) noexcept;
-    void foldEnds() noexcept;
-    [[nodiscard]] double slope() const noexcept;
-    /// The greatest part of the step that stays within relaxed limits.
-    [[nodiscard]] double reach(double relax, double relaxStep) const noexcept;
-    [[nodiscard]] bool inside(const Row& row, std::span<const double> c,
-                              double relax) const noexcept;
-    void move(double part) noexcept;
-
-    [[nodiscard]] bool findInside() noexcept;
-    [[nodiscard]] bool improve() noexcept;
+    /// What the limits allow in a cell.
+    struct Ceiling {
+        double x;
+        double acceleration;
+        double jerk;
+    };
+    void findCeilings() noexcept;
+    [[nodiscard]] static double climb(double x, double distance, const Ceiling& ceiling) noexcept;
+    void guess() noexcept;
+    /// How far the limits are used at most: 1 at a limit.
+    [[nodiscard]] double greatestUse() const noexcept;
     [[nodiscard]] double duration() const noexcept;
+
+    [[nodiscard]] bool minimise(const Goal& goal) noexcept;
+    void assemble(const Goal& goal) noexcept;
+    void foldEnds() noexcept;
+    [[nodiscard]] bool findStep(const Goal& goal) noexcept;
+    /// The greatest part of the step that keeps all limits.
+    [[nodiscard]] double reach() noexcept;
+    [[nodiscard]] bool inside(const Row& row, double part) const noexcept;
+    /// \return the mean product of slack and multiplier after the step
+    double move(double part) noexcept;
 
     const Section* section_{nullptr};
     const Grid* grid_{nullptr};
@@ -53,17 +62,22 @@ private:
     std::size_t last_{0};
     double headTie_{1.0};  ///< c[1] / c[0] where the section begins at rest
     double tailTie_{1.0};
-    double limitCount_{0.0};
     int steps_{0};
 
     std::vector<double> c_;
     std::vector<double> step_;
+    std::vector<double> column_;
     std::vector<double> gradient_;
-    std::vector<double> relaxColumn_;
+    std::vector<Ceiling> ceilings_;
+    std::vector<double> multipliers_;
+    std::vector<double> multiplierSteps_;
+    Pentadiagonal matrix_;
+    double barrier_{0.0};
+    double pressure_{0.0};  ///< what a step would gain if nothing were in its way
+    double relax_{1.0};
+    double relaxStep_{0.0};
     double relaxGradient_{0.0};
     double relaxCurvature_{0.0};
-    Pentadiagonal matrix_;
-    std::vector<double> trial_;
 };
 
 }  // namespace takt::planner::detail

@@ -205,7 +205,8 @@ double nextStop(const PathGeometry& path, double s) noexcept {
 core::Result<std::uint64_t, PathError> PathPlanner::extend(const PathMotion& running,
                                                            std::uint64_t from,
                                                            std::span<const PathElement> more,
-                                                           PathMotion& out) {
+                                                           PathMotion& out,
+                                                           std::optional<Transition> joint) {
     work_->effort = {};
     if (const auto error = work_->check()) return *error;
     const FeedState state = running.feed.at(from);
@@ -214,6 +215,7 @@ core::Result<std::uint64_t, PathError> PathPlanner::extend(const PathMotion& run
     const bool atRest = state.s1 == 0.0 && state.s2 == 0.0;
 
     out.geometry = running.geometry;
+    if (joint) out.geometry.setEndTransition(*joint);
     // What is left already makes room first.
     const double shift = out.geometry.dropBefore(state.s);
     const std::size_t oldPieces = out.geometry.pieceCount();

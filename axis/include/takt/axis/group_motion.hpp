@@ -64,6 +64,7 @@ private:
     void stepPath(const planner::FeedState& next) noexcept;
     void stepDirect() noexcept;
     void stepBrakeDirect() noexcept;
+    void arrive() noexcept;
     void rest() noexcept;
     [[nodiscard]] planner::Limits brakeLimits(std::size_t axis, const Dynamics& dynamics,
                                               bool byAxes) const noexcept;

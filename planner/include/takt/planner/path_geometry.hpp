@@ -50,6 +50,11 @@ public:
     /// The end becomes a stop, whatever the last element asks for. \pre elementCount() > 0
     void stopAtEnd() noexcept { elements_.back().transition.mode = TransitionMode::Stop; }
 
+    /// What the next append() makes of the joint. \pre elementCount() > 0
+    void setEndTransition(const Transition& transition) noexcept {
+        elements_.back().transition = transition;
+    }
+
     /// Forgets all pieces that end at or before `s` and begins to count at the first that is left.
     /// \return what is to be subtracted from every s
     double dropBefore(double s) noexcept;

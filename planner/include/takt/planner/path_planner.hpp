@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <takt/planner/path_feed.hpp>
 #include <takt/planner/path_geometry.hpp>
@@ -67,10 +68,12 @@ public:
     /// `out` begins in that cycle with that state. Elements that are left by then are dropped. The
     /// end of `running` gets the transition it asks for if that begins after the state; where no
     /// feed is found for it, it stays the stop that it was.
+    /// \param joint in the place of the transition that the end of `running` was given
     /// \pre out is not running; more may be empty: then only what has been left is dropped
     core::Result<std::uint64_t, PathError> extend(const PathMotion& running, std::uint64_t from,
                                                   std::span<const PathElement> more,
-                                                  PathMotion& out);
+                                                  PathMotion& out,
+                                                  std::optional<Transition> joint = std::nullopt);
 
     /// What the last successful plan took, for reports.
     struct Effort {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <takt/axis/group_port.hpp>
+#include <takt/plcopen/enums.hpp>
 #include <takt/plcopen/mc_read.hpp>
 
 namespace takt::plcopen {
