@@ -190,6 +190,9 @@ std::optional<roadmap::ObstacleParams> readObstacles(ElementReader reader,
     roadmap::ObstacleParams obstacles;
     obstacles.group = static_cast<std::size_t>(members.group - groups.data());
     obstacles.origin = format(reader.place());
+    constexpr std::int64_t LongestLatency = 100000;
+    obstacles.latencyCycles = static_cast<std::uint32_t>(
+        reader.integer("latency", {1, LongestLatency}).value_or(obstacles.latencyCycles));
     std::map<std::string, int> lines;
     const auto keep = [&](roadmap::KeepOutParams keepOut, const ElementReader& element) {
         const auto [first, fresh] = lines.emplace(keepOut.name, element.place().line);

@@ -93,6 +93,14 @@ TEST_F(ObstacleRule, ReadsCylinders) {
     ASSERT_EQ(cylinder.spans.size(), 1U);
     EXPECT_EQ(cylinder.spans[0].to.count(), std::numeric_limits<double>::infinity());
 }
+TEST_F(ObstacleRule, TakesALatency) {
+    const LoadResult left = loadObstacles("<Obstacles group=\"G\"/>");
+    ASSERT_TRUE(left.machine.has_value()) << format(left.diagnostics);
+    EXPECT_EQ(left.machine->obstacles[0].latencyCycles, 100U);
+    const LoadResult given = loadObstacles("<Obstacles group=\"G\" latency=\"7\"/>");
+    ASSERT_TRUE(given.machine.has_value()) << format(given.diagnostics);
+    EXPECT_EQ(given.machine->obstacles[0].latencyCycles, 7U);
+}
 TEST_F(ObstacleRule, RefusesAnUnknownGroup) {
     expectRefused("<Obstacles group=\"H\"/>", "there is no group 'H'", "G");
 }

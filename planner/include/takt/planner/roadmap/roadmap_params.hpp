@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -41,7 +42,8 @@ struct KeepOutParams {
 struct ObstacleParams {
     std::size_t group{0};  ///< place among the machine's groups
     std::vector<KeepOutParams> keepOuts;
-    std::string origin;  ///< "machine.xml:88"
+    std::uint32_t latencyCycles{100};  ///< from a program's order to its answer, at least
+    std::string origin;                ///< "machine.xml:88"
 };
 
 }  // namespace takt::planner::roadmap
