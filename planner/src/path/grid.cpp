@@ -9,7 +9,7 @@ namespace takt::planner::detail {
 namespace {
 
 /// Cells of a contour; of a quarter turn of an arc.
-constexpr double kBlendCells = 12.0;
+constexpr double kBlendCells = 20.0;
 constexpr double kQuarterCells = 8.0;
 /// Neighbouring cells differ by this factor where ramps may be, and by the other one beyond.
 constexpr double kGrowth = 1.3;
