@@ -13,7 +13,7 @@ The path file says what was programmed, one word and its numbers in a line:
   repeat 4 … end    the lines between so many times
 
 Judged are the rows from the first in which the group moves to the one in which it is in GroupStandby
-or GroupDisabled again:
+or GroupDisabled again, or has rested on its path for a while:
 - every set position is on the path; only where two elements meet that may be cut, within half of the
   shorter one and ten times the deviation, it may be off by as much as the deviation
 - every joint is passed in its order, within its deviation
@@ -37,6 +37,7 @@ RELATIVE, ULPS = 1e-6, 4
 ON_PATH = 1e-6          # mm: how far beside the path a set position may be
 CORNER_SLACK = 0.01     # of the deviation: between two cycles the contour is nearer than its chord
 LENGTH_SLACK = 0.03     # of a step: a chord is shorter than its arc
+REST = 50               # cycles without motion that end a path
 MAX_SHOWN = 40
 ENDED = ("GroupStandby", "GroupDisabled")
 
@@ -171,9 +172,13 @@ class Trace:
         moving = [i for i, state in enumerate(self.state) if state == "GroupMoving"]
         if not moving:
             raise machine_file.MachineError("the group never moves")
-        end = next((i for i in range(moving[0], len(self.state)) if self.state[i] in ENDED),
-                   len(self.state))
-        return max(0, moving[0] - 1), end
+        begin, rested = moving[0], 0
+        for row in range(begin + 1, len(self.state)):
+            gone = self.s[row] != self.s[begin]
+            rested = rested + 1 if gone and self.s[row] == self.s[row - 1] else 0
+            if self.state[row] in ENDED or rested > REST:
+                return max(0, begin - 1), row
+        return max(0, begin - 1), len(self.state)
 
     def cut(self, begin, end):
         part = copy.copy(self)
