@@ -151,9 +151,11 @@ Use useOf(const Trace& trace, std::span<const PathAxisLimits> limits, double cyc
             const auto at = [&](std::size_t n) {
                 return static_cast<long double>(trace.rows[k + n][i]);
             };
-            // Positions are doubles: a difference knows no better than this.
+            // Positions and places are doubles: a difference knows no better than this.
             const long double noise =
-                std::numeric_limits<double>::epsilon() * std::fabs(at(0)) + 1e-15L;
+                std::numeric_limits<double>::epsilon() *
+                    (std::fabs(at(0)) + std::fabs(static_cast<long double>(trace.s[k]))) +
+                1e-15L;
             const auto size = [&](long double x, int terms) {
                 return std::max(0.0L, std::fabs(x) - static_cast<long double>(terms) * noise);
             };
