@@ -62,14 +62,19 @@ ErrorId stateForStop(const GroupView& view, const GroupCommand& command) noexcep
     return sameInstance ? ErrorId::None : ErrorId::GroupLocked;
 }
 
-/// A stop may be as hard as the axes can; what is not said is left to them.
+/// What may be left to the axes: 0 becomes infinite, which is no bound.
+template <typename T>
+ErrorId settleFree(T& value) noexcept {
+    if (!(value >= T{0.0})) return ErrorId::InvalidParameter;
+    if (value == T{0.0}) value = T{std::numeric_limits<double>::infinity()};
+    return ErrorId::None;
+}
+
+/// A stop may be as hard as the axes can.
 ErrorId admitStop(const GroupView& view, GroupCommand& command) noexcept {
     if (const ErrorId bad = stateForStop(view, command); bad != ErrorId::None) return bad;
-    constexpr double Any = std::numeric_limits<double>::infinity();
-    Dynamics& d = command.dynamics;
-    const ErrorId bad = settle(d.deceleration, core::Acceleration{Any}, core::Acceleration{Any});
-    if (bad != ErrorId::None) return bad;
-    return settle(d.jerk, core::Jerk{Any}, core::Jerk{Any});
+    const ErrorId bad = settleFree(command.dynamics.deceleration);
+    return bad != ErrorId::None ? bad : settleFree(command.dynamics.jerk);
 }
 
 ErrorId stateForMotion(const GroupView& view) noexcept {
@@ -108,14 +113,9 @@ ErrorId settlePath(const PathLimitParams& limits, GroupCommand& command) noexcep
 
 /// Every axis goes by its own limits; what is said bounds them all.
 ErrorId settleDirect(GroupCommand& command) noexcept {
-    constexpr double Any = std::numeric_limits<double>::infinity();
     Dynamics& d = command.dynamics;
-    const auto settled = [](auto& value) {
-        using T = std::remove_reference_t<decltype(value)>;
-        return settle(value, T{Any}, T{Any});
-    };
-    for (const ErrorId bad :
-         {settled(d.velocity), settled(d.acceleration), settled(d.deceleration), settled(d.jerk)}) {
+    for (const ErrorId bad : {settleFree(d.velocity), settleFree(d.acceleration),
+                              settleFree(d.deceleration), settleFree(d.jerk)}) {
         if (bad != ErrorId::None) return bad;
     }
     return ErrorId::None;

@@ -151,6 +151,7 @@ class Machine:
             raise MachineError(f"{path}: no <Network>")
         self.cycle = float(seconds(network.get("cycle", "1 ms")))
         self.axes = {axis.get("name"): axis for axis in root.iter("Axis")}
+        self.groups = {group.get("name"): group for group in root.iter("Group")}
         devices = {}
         for esi in root.iter("Esi"):
             devices.update(esi_devices(path.parent / esi.get("file")))
@@ -168,6 +169,17 @@ class Machine:
             outputs = outputs or 0x1600 <= index < 0x1800
             inputs = inputs or 0x1A00 <= index < 0x1C00
         return Slave(element.get("name"), outputs, inputs)
+
+    def group_limits(self, name):
+        """Limits along the path of a group: velocity, acceleration (the larger way), jerk."""
+        if name not in self.groups:
+            raise MachineError(f"no group {name}; the file has {', '.join(self.groups) or 'none'}")
+        limits = child(self.groups[name], "Limits", name)
+        up = float(motion(attribute(limits, "acceleration", name)))
+        steepest = max(up, float(motion(limits.get("deceleration"))) if limits.get("deceleration") else up)
+        jerk = limits.get("jerk")
+        return {"velocity": float(motion(attribute(limits, "velocity", name))), "acceleration": steepest,
+                "jerk": float(motion(jerk)) if jerk else RAMPS_PER_SECOND * steepest}
 
     def axis(self, name):
         if name not in self.axes:

@@ -112,6 +112,18 @@ public:
         return half * sum;
     }
 
+    /// How far the direction moves.
+    [[nodiscard]] double turnBetween(double from, double to) const noexcept {
+        const double a = 1.0 / speed(from);
+        const double b = 1.0 / speed(to);
+        double sum = 0.0;
+        for (std::size_t i = first_; i < last_; ++i) {
+            const double d = taylor(curve_[i], to).f1 * b - taylor(curve_[i], from).f1 * a;
+            sum += d * d;
+        }
+        return std::sqrt(sum);
+    }
+
     [[nodiscard]] double closest() const noexcept;
 
 private:
@@ -141,34 +153,38 @@ double Curve::closest() const noexcept {
     return distance(0.5 * (low + high));
 }
 
-/// Lengths of the curve up to equal steps of u.
-constexpr std::size_t kMeasures = 96;
-
-using Lengths = std::array<double, kMeasures + 1>;
+constexpr std::size_t kMeasures = 128;
 
 double stepOf(std::size_t k) noexcept {
     return static_cast<double>(k) / static_cast<double>(kMeasures);
 }
 
-Lengths measure(const Curve& curve) noexcept {
-    Lengths lengths{};
-    for (std::size_t k = 0; k < kMeasures; ++k)
-        lengths[k + 1] = lengths[k] + curve.lengthBetween(stepOf(k), stepOf(k + 1));
-    return lengths;
-}
+/// A curve up to equal steps of u: its length, and a mixture of length and turning, either of which
+/// is 1 at the end.
+struct Measures {
+    std::array<double, kMeasures + 1> length{};
+    std::array<double, kMeasures + 1> mixture{};
 
-/// The u at which the curve is `s` long.
-double parameterAt(const Curve& curve, const Lengths& lengths, double s) noexcept {
-    std::size_t k = 0;
-    while (k + 1 < kMeasures && lengths[k + 1] <= s) ++k;
-    const double share = (s - lengths[k]) / (lengths[k + 1] - lengths[k]);
-    double u = stepOf(k) + share / static_cast<double>(kMeasures);
-    for (int i = 0; i < 6; ++i) {
-        const double off = lengths[k] + curve.lengthBetween(stepOf(k), u) - s;
-        u = std::clamp(u - off / curve.speed(u), stepOf(k), stepOf(k + 1));
+    explicit Measures(const Curve& curve) noexcept {
+        std::array<double, kMeasures + 1> turning{};
+        for (std::size_t k = 0; k < kMeasures; ++k) {
+            length[k + 1] = length[k] + curve.lengthBetween(stepOf(k), stepOf(k + 1));
+            turning[k + 1] = turning[k] + curve.turnBetween(stepOf(k), stepOf(k + 1));
+        }
+        const double turn = std::max(turning.back(), 1e-3);
+        for (std::size_t k = 0; k <= kMeasures; ++k)
+            mixture[k] = length[k] / length.back() + turning[k] / turn;
     }
-    return u;
-}
+
+    /// The u at which a share of the mixture is reached, near enough.
+    [[nodiscard]] double at(double share) const noexcept {
+        const double sought = share * mixture.back();
+        std::size_t k = 0;
+        while (k + 1 < kMeasures && mixture[k + 1] <= sought) ++k;
+        const double part = (sought - mixture[k]) / (mixture[k + 1] - mixture[k]);
+        return stepOf(k) + part / static_cast<double>(kMeasures);
+    }
+};
 
 bool isLinePair(const PathElement& before, const PathElement& after) noexcept {
     return before.kind == ElementKind::Line && after.kind == ElementKind::Line;
@@ -180,26 +196,28 @@ PathBlend::PathBlend(const PathElement& before, const PathElement& after, double
     : space_{before.space}, corner_{before.to}, reach_{reach} {
     const Curve curve{before, after, reach};
     curve_ = curve.coefficients();
-    const Lengths lengths = measure(curve);
-    length_ = lengths[kMeasures];
-    const double span = length_ / static_cast<double>(kSpans);
+    const Measures measures{curve};
     End from = curve.inverseAt(0.0);
     for (std::size_t k = 0; k < kSpans; ++k) {
         const bool last = k + 1 == kSpans;
-        const double u =
-            last ? 1.0 : parameterAt(curve, lengths, span * static_cast<double>(k + 1));
-        const End to = curve.inverseAt(u);
+        const double share = static_cast<double>(k + 1) / static_cast<double>(kSpans);
+        const End to = curve.inverseAt(last ? 1.0 : measures.at(share));
+        const double span = curve.lengthBetween(from.f, to.f);
+        starts_[k + 1] = starts_[k] + span;
         parameter_[k] = hermite({from.f, from.f1 * span, from.f2 * span * span},
                                 {to.f, to.f1 * span, to.f2 * span * span});
         from = to;
     }
+    length_ = starts_.back();
 }
 
 void PathBlend::evaluate(double s, PathDerivatives& out) const noexcept {
-    const double perSpan = static_cast<double>(kSpans) / length_;
-    const double place = std::clamp(s * perSpan, 0.0, static_cast<double>(kSpans));
-    const std::size_t k = std::min(static_cast<std::size_t>(place), kSpans - 1);
-    const Taylor u = taylor(parameter_[k], place - static_cast<double>(k));
+    std::size_t k = 0;
+    for (std::size_t step = kSpans / 2; step > 0; step /= 2) {
+        if (starts_[k + step] <= s) k += step;
+    }
+    const double perSpan = 1.0 / (starts_[k + 1] - starts_[k]);
+    const Taylor u = taylor(parameter_[k], std::clamp((s - starts_[k]) * perSpan, 0.0, 1.0));
     const double u1 = u.f1 * perSpan;
     const double u2 = u.f2 * perSpan * perSpan;
     const double u3 = u.f3 * perSpan * perSpan * perSpan;

@@ -1,10 +1,18 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <takt/planner/path_feed.hpp>
 
 namespace takt::planner {
 
 namespace {
+
+/// 1/(2n(2n+1)) and 1/((2n+1)(2n+2)) from n = 1 on.
+constexpr std::size_t kTerms = 9;
+constexpr std::array<double, kTerms> kOdd{1.0 / 6,   1.0 / 20,  1.0 / 42,  1.0 / 72, 1.0 / 110,
+                                          1.0 / 156, 1.0 / 210, 1.0 / 272, 1.0 / 342};
+constexpr std::array<double, kTerms> kEven{1.0 / 12,  1.0 / 30,  1.0 / 56,  1.0 / 90, 1.0 / 132,
+                                           1.0 / 182, 1.0 / 240, 1.0 / 306, 1.0 / 380};
 
 /// s'' = half slope + bend s has the solution s = v S(t) + a K(t) with the series of sinh and cosh,
 /// or of sin and cos: it depends on the sign of bend, the series do not. A cell is so short that
@@ -18,9 +26,9 @@ struct Series {
         const double z = bend * t * t;
         double odd = 1.0;
         double even = 1.0;
-        for (int n = 10; n >= 1; --n) {
-            odd = 1.0 + z * odd / ((2.0 * n) * (2.0 * n + 1.0));
-            even = 1.0 + z * even / ((2.0 * n + 1.0) * (2.0 * n + 2.0));
+        for (std::size_t n = kTerms; n-- > 0;) {
+            odd = 1.0 + z * odd * kOdd[n];
+            even = 1.0 + z * even * kEven[n];
         }
         s = t * odd;
         k = 0.5 * t * t * even;
@@ -100,6 +108,13 @@ void FeedProfile::addRest(const FeedProfile& other, double time, double until, d
         piece.from.s -= shift;
         add(piece);
     }
+}
+
+double FeedProfile::restAfter(double time) const noexcept {
+    std::size_t i = 0;
+    while (i < pieces_.size() && pieces_[i].start + pieces_[i].duration <= time) ++i;
+    while (i + 1 < pieces_.size() && pieces_[i + 1].from.s1 != 0.0) ++i;
+    return i < pieces_.size() ? pieces_[i].start + pieces_[i].duration : time;
 }
 
 FeedState FeedProfile::atTime(double time) const noexcept {

@@ -8,8 +8,10 @@ namespace takt::planner::detail {
 
 namespace {
 
-/// Cells of a contour; of a quarter turn of an arc.
+/// Cells of a contour for its length, and as many more as it turns by this angle (radians); cells
+/// of a quarter turn of an arc.
 constexpr double kBlendCells = 12.0;
+constexpr double kBlendTurn = 0.15;
 constexpr double kQuarterCells = 8.0;
 /// Neighbouring cells differ by this factor where ramps may be, and by the other one beyond.
 constexpr double kGrowth = 1.3;
@@ -121,38 +123,66 @@ double virtualLength(const Span& span, double x0) noexcept {
     return v * std::sqrt(2.0 * v / jerk) / 3.0;
 }
 
-/// Sizes of cells with the distance from one end of a span.
+/// The greatest size of a cell at a place: smaller where a contour turns.
+double mostAt(const PathGeometry& geometry, const Span& span, double s) noexcept {
+    if (!geometry.piece(span.piece).isBlend()) return span.cell;
+    PathDerivatives at;
+    geometry.evaluate(span.piece, s, at);
+    // Axes that do not measure the length may have steep derivatives throughout.
+    const std::size_t axes = geometry.space().axes;
+    const double turn = greatestNorm(at.d2, axes) / greatestNorm(at.d1, axes) / kBlendTurn;
+    return 1.0 / (kBlendCells / geometry.piece(span.piece).length + turn);
+}
+
+/// Sizes of cells along a span, from one end inwards.
 class March {
 public:
-    March(const Span& span, double seed) noexcept : span_{span}, size_{seed}, seed_{seed} {
+    /// \param direction 1 or -1
+    March(const PathGeometry& geometry, const Span& span, double seed, double direction) noexcept
+        : geometry_{geometry},
+          span_{span},
+          at_{direction > 0.0 ? span.from : span.to},
+          direction_{direction},
+          seed_{seed},
+          size_{seed} {
         const double v = span.speed;
         ramp_ = 0.5 * v * v / span.acceleration + 2.0 * v * span.rise;
         step_ = std::max(span.rise / kCellsPerRise, v / span.acceleration / kCellsPerRamp);
     }
     [[nodiscard]] double size() const noexcept { return size_; }
-    void advance(double distance) noexcept {
-        if (distance > ramp_ && !span_.curved) {
+
+    /// The next cell begins at `s`.
+    void moveTo(double s) noexcept {
+        const double distance = std::fabs(s - at_);
+        if (span_.curved) {
+            const double next = std::min(size_ * kGrowth, mostAt(geometry_, span_, s));
+            size_ = std::min(next, mostAt(geometry_, span_, s + direction_ * next));
+            return;
+        }
+        if (distance > ramp_) {
             size_ *= kFarGrowth;
             return;
         }
         const double speed = std::min(span_.speed, std::sqrt(2.0 * span_.acceleration * distance));
-        const double most =
-            span_.curved ? span_.cell : std::max({speed * step_, seed_, size_ / kGrowth});
-        size_ = std::min(size_ * kGrowth, std::max(most, seed_));
+        size_ = std::min(size_ * kGrowth, std::max({speed * step_, seed_, size_ / kGrowth}));
     }
 
 private:
+    const PathGeometry& geometry_;
     const Span& span_;
-    double size_;
+    double at_;
+    double direction_;
     double seed_;
+    double size_;
     double ramp_;
     double step_;
 };
 
 /// Fills one span with nodes; its first is there already.
-bool fill(const Span& span, double from, double to, double seedLeft, double seedRight, Grid& out) {
-    March left{span, seedLeft};
-    March right{span, seedRight};
+bool fill(const PathGeometry& geometry, const Span& span, double from, double to, double seedLeft,
+          double seedRight, Grid& out) {
+    March left{geometry, span, seedLeft, 1.0};
+    March right{geometry, span, seedRight, -1.0};
     double l = from;
     double r = to;
     std::vector<double> behind;
@@ -160,11 +190,11 @@ bool fill(const Span& span, double from, double to, double seedLeft, double seed
            1.2 * std::max(left.size(), right.size()) + std::min(left.size(), right.size())) {
         if (left.size() <= right.size()) {
             l += left.size();
-            left.advance(l - span.from);
+            left.moveTo(l);
             out.nodes.push_back(l);
         } else {
             r -= right.size();
-            right.advance(span.to - r);
+            right.moveTo(r);
             behind.push_back(r);
         }
         if (out.nodes.size() + behind.size() > mostCells) return false;
@@ -200,7 +230,7 @@ bool makeGrid(const PathGeometry& geometry, const Section& section, const LimitS
             last ? 0.3 * out.tail : seedBetween(geometry, spans[i], spans[i + 1], limits);
         const double from = i == 0 ? out.nodes.front() : spans[i].from;
         const double to = last ? section.to - out.tail : spans[i].to;
-        if (!fill(spans[i], from, to, seed, next, out)) return false;
+        if (!fill(geometry, spans[i], from, to, seed, next, out)) return false;
         seed = next;
     }
     return true;

@@ -26,7 +26,7 @@ public:
     [[nodiscard]] double reach() const noexcept { return reach_; }
 
 private:
-    static constexpr std::size_t kSpans = 24;
+    static constexpr std::size_t kSpans = 32;
 
     PathSpace space_;
     PathPoint corner_;
@@ -34,8 +34,10 @@ private:
     double length_{0.0};
     /// Coefficients of u^0..u^5, from the corner.
     std::array<std::array<double, 6>, maxPathAxes> curve_{};
-    /// u as a polynomial of the share of a span of length: the inverse of the length.
+    /// u as polynomials of the share of a span of length: the inverse of the length. The spans are
+    /// shorter where the contour turns.
     std::array<std::array<double, 6>, kSpans> parameter_{};
+    std::array<double, kSpans + 1> starts_{};
 };
 
 /// How far from the corner the blend of this reach passes, measured where the length is.

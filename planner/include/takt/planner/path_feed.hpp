@@ -57,6 +57,9 @@ public:
     /// rt. The same at any time, in seconds.
     [[nodiscard]] FeedState atTime(double time) const noexcept;
 
+    /// rt. When the feed next comes to rest, at a stop or at its end; `time` if it has. O(pieces).
+    [[nodiscard]] double restAfter(double time) const noexcept;
+
     /// Whole cycles until it rests at its end.
     [[nodiscard]] std::uint64_t cycles() const noexcept { return cycles_; }
     /// Seconds of motion, without the rounding up to whole cycles.
