@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "../axis/group_rig.hpp"
 #include "block_rig.hpp"
 
@@ -135,10 +137,10 @@ TEST(MovePath, IsRefusedAsAWholeWhenOneSegmentIs) {
     MC_MovePath move;
     execute(move);
     MC_PATH_DATA_REF path = PathRig::square();
-    path.lineTo({0.0, 1e7, 0.0});
+    path.lineTo({0.0, std::numeric_limits<double>::quiet_NaN(), 0.0});
     rig.call(move, path);
     EXPECT_TRUE(move.Error);
-    EXPECT_EQ(move.ErrorID, ErrorId::TargetOutsideSWLimit);
+    EXPECT_EQ(move.ErrorID, ErrorId::NotFinite);
     EXPECT_EQ(rig.port.view().state, GroupState::Standby);
     for (int i = 0; i < 50; ++i) rig.cycle();
     EXPECT_EQ(rig.set()[0], 0.0);
