@@ -17,7 +17,8 @@ constexpr std::array<double, 5> kShares{0.998, 0.99, 0.97, 0.94, 0.9};
 
 /// A feed from rest that would have to become slower than this is planned again.
 constexpr double kMostStretch = 1.5;
-/// Slower feeds meet the cycles elsewhere, so it may take more than one round, with ever more added.
+/// Slower feeds meet the cycles elsewhere, so it may take more than one round, with ever more
+/// added.
 constexpr int kMostRounds = 10;
 
 /// What a difference may exceed its limit by: rounding.
