@@ -220,6 +220,7 @@ void TopViewData::thin() {
         places_ = 0;
         for (std::vector<Place>& way : ways_) {
             std::vector<svg::Point> points;
+            points.reserve(way.size());
             for (const Place& place : way) points.push_back({place.x, place.y});
             way.clear();
             for (const svg::Point& point : svg::simplified(points, tolerance_))
