@@ -61,6 +61,7 @@ public:
         out_.rows.clear();
         out_.terms.clear();
         findJoints();
+        if (!section_.fromRest) findStart();
         if (grid_.head > 0.0) makeRest(true);
         for (std::size_t cell = 0; cell < grid_.cells(); ++cell) makeCell(cell);
         makeRest(false);
@@ -74,6 +75,8 @@ private:
     };
 
     void findJoints();
+    void findStart();
+    void relaxAtStart(Row& row, double s);
     void makeCell(std::size_t cell);
     void makeRest(bool head);
     void addRow(Row row, std::uint32_t piece, double s, bool first);
@@ -87,6 +90,9 @@ private:
     Rows& out_;
     Spline spline_;
     std::vector<Joint> joints_;
+    double speedAtStart_{1.0};
+    double pullAtStart_{1.0};
+    double startLength_{0.0};
 };
 
 void Maker::findJoints() {
@@ -99,6 +105,42 @@ void Maker::findJoints() {
         // A bound that was only asked for needs no room; one from a jump does.
         const bool asked = x >= piece.endVelocity * piece.endVelocity;
         joints_.push_back({s, x, asked ? 0.0 : kCyclesAtJoint * limits_.cycle * std::sqrt(x)});
+    }
+}
+
+/// A feed in motion may use its limits up to the share that it was planned with. So that there is
+/// a way on, the limits begin half way between that and the whole, and fall to their share soon.
+void Maker::findStart() {
+    PathDerivatives at;
+    geometry_.evaluate(grid_.pieces.front(), section_.from, at);
+    const double v = std::sqrt(section_.x0);
+    const PathFeed feed = geometry_.feedOf(grid_.pieces.front());
+    const double s2 = 0.5 * section_.slope0;
+    double speed = v / feed.velocity.count();
+    double pull = std::max(s2 / feed.acceleration.count(), -s2 / feed.deceleration.count());
+    double rise = 0.0;
+    for (std::size_t i = 0; i < limits_.axes.size(); ++i) {
+        const PathAxisLimits& axis = limits_.axes[i];
+        speed = std::max(speed, std::fabs(at.d1[i]) * v / axis.velocity.count());
+        const double a = at.d1[i] * s2 + at.d2[i] * section_.x0;
+        pull = std::max(pull, std::fabs(a) / axis.acceleration.count());
+        rise = std::max(rise, axis.acceleration.count() / axis.jerk.count());
+    }
+    speedAtStart_ = std::max(1.0, (0.5 + 0.5 * speed) / limits_.speedShare);
+    pullAtStart_ = std::max(1.0, (0.5 + 0.5 * pull) / limits_.share);
+    startLength_ = v * rise;
+}
+
+void Maker::relaxAtStart(Row& row, double s) {
+    const double near = 1.0 - (s - section_.from) / startLength_;
+    if (!(near > 0.0)) return;
+    const double speed = 1.0 + (speedAtStart_ - 1.0) * near;
+    const double pull = 1.0 + (pullAtStart_ - 1.0) * near;
+    row.xMax *= speed * speed;
+    for (std::size_t k = row.firstTerm; k < row.endTerm; ++k) {
+        out_.terms[k].low *= pull;
+        out_.terms[k].high *= pull;
+        out_.terms[k].jerk *= pull;
     }
 }
 
@@ -152,6 +194,7 @@ void Maker::addRow(Row row, std::uint32_t piece, double s, bool first) {
     row.firstTerm = static_cast<std::uint32_t>(out_.terms.size());
     addTerms(piece, at, jerkShareAt(s));
     row.endTerm = static_cast<std::uint32_t>(out_.terms.size());
+    if (!section_.fromRest) relaxAtStart(row, s);
     out_.rows.push_back(row);
 }
 
