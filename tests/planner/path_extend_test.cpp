@@ -18,8 +18,7 @@ using test::Use;
 Trace spliced(const PathMotion& running, std::uint64_t cycle, const PathMotion& next) {
     Trace trace;
     for (int k = 0; k < 3; ++k) trace.add(running.geometry, running.feed.at(0).s);
-    for (std::uint64_t k = 0; k < cycle; ++k)
-        trace.add(running.geometry, running.feed.at(k).s);
+    for (std::uint64_t k = 0; k < cycle; ++k) trace.add(running.geometry, running.feed.at(k).s);
     const double shift = running.feed.at(cycle).s - next.feed.at(0).s;
     for (std::uint64_t k = 0; k <= next.feed.cycles() + 3; ++k)
         trace.add(next.geometry, next.feed.at(k).s, shift);
@@ -124,9 +123,9 @@ TEST(PathExtension, FollowsALongPathInSmallWindows) {
     double shift = 0.0;
     std::uint64_t cycles = 0;
     while (given < all.size()) {
-        // The next element comes when the feed is in the second of those that are known.
+        // The next element comes when the first of those that are known is left.
         std::uint64_t k = 0;
-        while (running.geometry.elementAt(running.feed.at(k).s) < 2) {
+        while (k < running.feed.cycles() && running.geometry.elementAt(running.feed.at(k).s) < 1) {
             trace.add(running.geometry, running.feed.at(k).s, shift);
             ++k;
         }

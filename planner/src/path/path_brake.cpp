@@ -84,11 +84,13 @@ PathBrake::Room PathBrake::roomAt(const Place& place) const noexcept {
     const double v = place.feed.s1;
     const double a = place.feed.s2;
     Room room{};
+    room.steady = unlimited;
     double bend = 0.0;
     double steep = 0.0;
     forEachDirection(motion_->geometry, {limits_.data(), axes_}, path_, p, [&](const Direction& d) {
         bend = std::max(bend, std::fabs(d.d2));
         steep = std::max(steep, std::fabs(d.d1));
+        if (d.d1 != 0.0) room.steady = std::min(room.steady, d.jerk / std::fabs(d.d1));
         narrow(room.acceleration, d.d2 * v * v, d.d1, d.down, d.up);
         narrow(room.jerk, 3.0 * d.d2 * v * a + d.d3 * v * v * v, d.d1, d.jerk, d.jerk);
     });
@@ -229,7 +231,9 @@ FeedState PathBrake::step() noexcept {
         follow();
         return place_.feed;
     }
-    double jerk = braking.value_or(room.jerk.high);
+    // Where no way on was left by what lies ahead, back towards the plan at the pace of the axes.
+    const double back = room.jerk.high > 0.0 ? room.jerk.high : 0.5 * room.steady;
+    double jerk = braking.value_or(back);
     const double turn = a < 0.0 && jerk > 0.0 ? -a / jerk : unlimited;
     if (turn <= h && v + 0.5 * a * turn <= 1e-9 * v) {
         // On the parabola down to zero within this cycle.

@@ -65,6 +65,7 @@ public:
         if (grid_.head > 0.0) makeRest(true);
         for (std::size_t cell = 0; cell < grid_.cells(); ++cell) makeCell(cell);
         makeRest(false);
+        boundCoefficients();
     }
 
 private:
@@ -78,6 +79,7 @@ private:
     void findStart();
     void relaxAtStart(Row& row, double s);
     void makeCell(std::size_t cell);
+    void boundCoefficients();
     void makeRest(bool head);
     void addRow(Row row, std::uint32_t piece, double s, bool first);
     void addTerms(std::uint32_t piece, const PathDerivatives& at, double jerkShare);
@@ -210,6 +212,28 @@ void Maker::makeCell(std::size_t cell) {
         row.time = (share == 0.5 ? 4.0 : 1.0) * h / 6.0;
         const double s = share == 1.0 ? grid_.nodes[cell + 1] : left + share * h;
         addRow(row, piece, s, cell == 0 && share == 0.0);
+    }
+}
+
+/// A spline stays below its coefficients. So the velocity keeps its limit between the points too.
+void Maker::boundCoefficients() {
+    std::vector<double> most(grid_.cells());
+    for (std::size_t cell = 0; cell < most.size(); ++cell) {
+        PathDerivatives at;
+        geometry_.evaluate(grid_.pieces[cell], 0.5 * (grid_.nodes[cell] + grid_.nodes[cell + 1]),
+                           at);
+        most[cell] = lineLimits(geometry_, grid_.pieces[cell], at, limits_).x;
+    }
+    for (std::size_t i = 2; i + 2 < grid_.cells() + 2; ++i) {
+        Row row{};
+        row.coefficient = static_cast<std::uint32_t>(i);
+        row.x[0] = 1.0;
+        row.acceleration = true;
+        row.xMax = std::min(most[i - 2], most[i - 1]);
+        if (i < most.size()) row.xMax = std::min(row.xMax, most[i]);
+        row.firstTerm = row.endTerm = static_cast<std::uint32_t>(out_.terms.size());
+        if (!section_.fromRest) relaxAtStart(row, grid_.nodes[i - 1]);
+        out_.rows.push_back(row);
     }
 }
 

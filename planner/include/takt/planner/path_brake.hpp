@@ -50,6 +50,7 @@ private:
     struct Room {
         Range acceleration;
         Range jerk;
+        double steady;    ///< jerk along the path that the axes allow on a line
         double turning;   ///< radians per second
         double followed;  ///< acceleration of the plan, made evenly slower
         double safe;      ///< acceleration from which on nothing has to be taken back
