@@ -404,6 +404,27 @@ TEST(Group, StopsAtTheEndOfWhatIsPlannedWhenAPlanIsLateAndGoesOnWhenItComes) {
     EXPECT_EQ(rig.group.status().latePlans, 1U);
 }
 
+TEST(Group, GivesASlowPlannerMoreTimeUntilItIsInTime) {
+    GroupRig rig;
+    rig.start();
+    const auto first = rig.send(lineTo({100.0, 0.0, 0.0}));
+    rig.cycles(50);
+    rig.plannerSleeps = true;
+    const auto second = rig.send(buffered(lineTo({100.0, 20.0, 0.0})));
+    // It takes 30 cycles for each plan: too long for the first, not for the second.
+    for (int plan = 0; plan < 2; ++plan) {
+        ASSERT_TRUE(rig.until([&] { return rig.group.planner().wanted(); }, 100));
+        rig.cycles(30);
+        rig.group.planner().work();
+    }
+    rig.plannerSleeps = false;
+    rig.cycles(60);
+    EXPECT_EQ(rig.group.status().latePlans, 1U);
+    EXPECT_EQ(rig.phase(first), CommandPhase::Active);
+    ASSERT_TRUE(rig.until([&] { return rig.phase(second) == CommandPhase::Done; }));
+    EXPECT_EQ(rig.group.status().latePlans, 1U);
+}
+
 TEST(Group, GivesUpWhenThePlanDoesNotComeForASecond) {
     GroupRig rig;
     rig.start();
