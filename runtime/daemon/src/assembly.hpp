@@ -30,8 +30,10 @@ LoadedPrograms loadPrograms(const config::MachineConfig& machine, std::vector<Li
 /// The machine's axes, not yet bound to a bus, at the end of `axes`.
 void makeAxes(const config::MachineConfig& machine, Axes& axes);
 
-/// Where each drive's objects lie in its device's process data.
-axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave);
+/// Where each drive's objects lie in its device's process data: where `bound` says it, else where
+/// they are mapped.
+axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave,
+                               const axis::DriveBindings& bound);
 
 /// Binds each axis to the process data and objects of its drive.
 void attachAxes(const config::MachineConfig& machine, fieldbus::ethercat::Master& master,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "assembly.hpp"
+#include "bridge_door.hpp"
 #include "bus.hpp"
 #include "console.hpp"
 #include "control_server.hpp"
@@ -92,6 +93,7 @@ private:
     scheduler::Grid grid_;
     scheduler::OverrunGuard overruns_;
     ProgramStock stock_;
+    std::unique_ptr<BridgeDoor> bridge_;  ///< null: the machine file asks for none
     MachineControl control_;
     ControlServer server_;
     MachineCycle cycle_;
