@@ -33,7 +33,7 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
 void MachineCycle::passOver(const scheduler::Beat& beat) noexcept {
     const Movers& movers = parts_.movers;
     for (std::uint32_t i = beat.madeUpFor; i > 0; --i) {
-        for (axis::Group& group : movers.groups) group.step();
+        for (axis::Group& group : movers.groups) group.missCycle();
         for (axis::Axis& axis : movers.axes) axis.missCycle();
         parts_.recorders.row(beat.number - i, movers);
     }
