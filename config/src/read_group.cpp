@@ -18,6 +18,7 @@ const AxisPart* findAxis(const std::vector<AxisPart>& axes, const std::string& n
 
 std::string axisNames(const std::vector<AxisPart>& axes) {
     std::vector<std::string> names;
+    names.reserve(axes.size());
     for (const AxisPart& axis : axes) names.push_back(axis.params.name);
     return names.empty() ? "the machine has no axis" : joined(names);
 }
