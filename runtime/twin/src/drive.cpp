@@ -13,6 +13,7 @@ namespace {
 constexpr double NanosecondsPerSecond = 1e9;
 constexpr double TenthRpmPerTurn = 600.0;  // 0.1 rpm in one turn per second
 constexpr double SecondsPerMinute = 60.0;
+constexpr double TenthsPerAmpere = 10.0;
 constexpr double Standstill = 0.01;  // turns/s
 constexpr double HardestStop = 1e4;  // turns/s², where a ramp is 0
 constexpr std::int64_t TorquePerMille = 1000;
@@ -56,6 +57,7 @@ DriveObjects::DriveObjects(ObjectDictionary& dictionary, const DriveTraits& trai
     homingFast = make(cia::HomingSpeeds, DataType::Unsigned32, 35000, 1);
     homingSlow = make(cia::HomingSpeeds, DataType::Unsigned32, 15000, 2);
     homingAcceleration = make(cia::HomingAcceleration, DataType::Unsigned32, 1000000);
+    homingCurrent = make(cia::HomingSpeeds, DataType::Unsigned16, 20, 4);
     homingOffsetMode = make(cia::HomingSpeeds, DataType::Unsigned8, 0, 5);
     homingOffsetSpeed = make(cia::HomingSpeeds, DataType::Unsigned16, 200, 7);
     digitalInputs = make(cia::DigitalInputs, DataType::Unsigned32);
@@ -117,7 +119,7 @@ void Drive::nextDemand() noexcept {
             return;
         case Source::Generator:
             if (activeMode_ == static_cast<std::int8_t>(Mode::Homing) && stop_ == Stop::None) {
-                homing_.step(motor_, generator_);
+                homing_.step(motor_, torque_, generator_);
             }
             demand_ = generator_.step(stepSeconds_);
             return;
@@ -230,25 +232,27 @@ void Drive::startHoming() noexcept {
     settings.slowSpeed = velocityTurns(number(objects_.homingSlow));
     settings.acceleration = velocityTurns(number(objects_.homingAcceleration));
     if (settings.acceleration <= 0.0) settings.acceleration = HardestStop;
-    settings.movesToOffset = traits_.movesToHomeOffset && number(objects_.homingOffsetMode) == 0;
+    settings.movesToOffset = traits_.homing.movesToOffset && number(objects_.homingOffsetMode) == 0;
     settings.offset = static_cast<double>(dictionary_.getSigned(objects_.homeOffset)) /
                       static_cast<double>(scale_.countsPerTurn());
     settings.offsetSpeed =
         static_cast<double>(number(objects_.homingOffsetSpeed)) / SecondsPerMinute;
-    settings.reference = traits_.homeReference;
+    settings.blockTorque = static_cast<double>(number(objects_.homingCurrent)) / TenthsPerAmpere *
+                           traits_.torquePerAmpere;
+    settings.traits = traits_.homing;
     homed_ = false;
     generator_.begin(demand_);
     source_ = Source::Generator;
-    homing_.start(settings, traits_.homingTable, motor_, generator_);
+    homing_.start(settings, motor_, generator_);
 }
 
 void Drive::takeHome() noexcept {
     const std::int64_t offset = dictionary_.getSigned(objects_.homeOffset);
-    if (homing_.settings().movesToOffset) {
-        zero_ = PositionScale::increments(homing_.home() + homing_.settings().offset);
+    if (const std::optional<double> zero = homing_.zero()) {
+        zero_ = PositionScale::increments(*zero);
     } else {
         zero_ = PositionScale::increments(homing_.home()) -
-                scale_.fromCounts(traits_.homeOffsetSign * offset);
+                scale_.fromCounts(traits_.homing.offsetSign * offset);
     }
     homed_ = true;
 }

@@ -29,7 +29,7 @@ struct DriveObjects {
     ObjectRef targetPosition, profileDeceleration, quickStopDeceleration;
     ObjectRef positiveTorque, negativeTorque;
     ObjectRef homeOffset, homingMethod, homingFast, homingSlow, homingAcceleration;
-    ObjectRef homingOffsetMode, homingOffsetSpeed;
+    ObjectRef homingCurrent, homingOffsetMode, homingOffsetSpeed;
     ObjectRef digitalInputs, panelCode;
 };
 

@@ -30,9 +30,9 @@ constexpr DriveTraits makeCd300e() {
     traits.disableDefault = 0;
     traits.homedInBit15 = true;
     traits.truncatesPositions = true;
-    traits.homingTable = HomingTable::Cd300e;
-    traits.homeReference = HomeReference::Standstill;
-    traits.movesToHomeOffset = true;
+    traits.homing.methods = HomingMethods::WithHardStops;
+    traits.homing.reference = HomeReference::Standstill;
+    traits.homing.movesToOffset = true;
     traits.followingWindow = 50000;
     traits.followingTimeout = 10;
     traits.powerUpMode = 1;
@@ -62,7 +62,9 @@ constexpr DriveTraits makeRa() {
     traits.dcLockedInBit8 = true;
     traits.zeroSpeedInBit14 = true;
     traits.unit = MotionUnit::TenthRpm;
-    traits.homingMethodZeroAllowed = false;
+    traits.homing.methods = HomingMethods::WithoutReversal;
+    traits.homing.zeroAllowed = false;
+    traits.homing.backsOffSlowly = false;
     traits.followingWindow = 3840000;
     return traits;
 }
@@ -95,7 +97,7 @@ bool DriveTraits::supportsMode(std::int8_t mode) const noexcept {
 }
 
 bool DriveTraits::supportsHoming(std::int8_t method) const noexcept {
-    return (method == 0 && homingMethodZeroAllowed) || homingSupported(homingTable, method);
+    return (method == 0 && homing.zeroAllowed) || homingSupported(homing.methods, method);
 }
 
 const DriveTraits& driveTraits(std::string_view profile) noexcept {

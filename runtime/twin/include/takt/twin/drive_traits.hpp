@@ -19,8 +19,27 @@ enum class HomeReference : std::uint8_t {
     Standstill,   ///< where the motor came to rest after it (index methods: the index)
 };
 
-/// Which of the two homing tables a drive follows.
-enum class HomingTable : std::uint8_t { Cd300e, Cia402 };
+/// Which homing methods a drive knows, beside 1 to 6, 17 to 22 and 33 to 35.
+enum class HomingMethods : std::uint8_t {
+    WithoutReversal,  ///< no others
+    Cia402,           ///< 7 to 14, 23 to 30, 37
+    WithHardStops,    ///< 7 to 14, 23 to 30, −17 and −18
+};
+
+/// How a drive homes. What its manual leaves open is a member here.
+struct HomingTraits {
+    HomingMethods methods{HomingMethods::Cia402};
+    HomeReference reference{HomeReference::LatchedEdge};
+    bool zeroAllowed{true};         ///< 6098h = 0 may be written
+    bool movesToOffset{false};      ///< 6099h:05 = 0 moves by 607Ch and zeroes there
+    bool offsetAtRestPoint{false};  ///< 6099h:05 = 1: the rest point instead of the index is home
+    std::int8_t offsetSign{-1};     ///< the home point reads sign · 607Ch
+    bool backsOff{true};          ///< 20 and 22 off the switch: leave it and enter it again slowly
+    bool backsOffSlowly{true};    ///< 4, 6, 20, 22: the speed of leaving the switch
+    bool startsAsPrinted{false};  ///< 4, 6, 20, 22 always begin as they do on the switch
+    bool indexSearchFast{false};  ///< 33 and 34 search at the fast speed
+    bool indexAtSlowSpeedOnly{false};  ///< an index met while slowing down does not count
+};
 
 /// How a drive differs from others within CiA 402. Every reading that the makers' documents leave
 /// open is a named member, so that a machine builder who has measured his drive can switch it.
@@ -66,17 +85,14 @@ struct DriveTraits {
     // Position and homing
     MotionUnit unit{MotionUnit::Counts};
     bool truncatesPositions{false};  ///< electronic gear cuts towards zero instead of rounding
-    HomingTable homingTable{HomingTable::Cia402};
-    HomeReference homeReference{HomeReference::LatchedEdge};
-    bool movesToHomeOffset{false};       ///< 6099h:05 = 0 moves by 607Ch and zeroes there
-    std::int8_t homeOffsetSign{-1};      ///< the home point reads sign · 607Ch
-    bool homingMethodZeroAllowed{true};  ///< 6098h = 0 may be written
+    HomingTraits homing;
 
     // Timing and power stage
     core::Duration bootTime{std::chrono::milliseconds{50}};
     core::Duration enableTime{std::chrono::milliseconds{5}};  ///< Switched on → Operation enabled
     double ratedTorque{1.27};                                 ///< Nm, a 400 W motor
     double torqueLimit{3.0};                                  ///< times rated
+    double torquePerAmpere{0.49};                             ///< Nm/A
     std::uint32_t followingWindow{0xFFFFFFFF};  ///< 6065h where the description has no default
     std::uint16_t followingTimeout{0};          ///< 6066h, ms
     std::int8_t powerUpMode{0};                 ///< 6060h
