@@ -362,7 +362,7 @@ struct BareRun {
         homing.start(settings, motor, generator);
         Demand demand = generator.demand();
         for (int i = 0; i < 60'000 && homing.state() != Homing::State::Done; ++i) {
-            const double torque = servo.torque(demand, motor, 10.0, 10.0);
+            const double torque = servo.torque(demand, motor, {10.0, 10.0, 0.0});
             motor.step(torque, false, Step);
             homing.step(motor, torque, generator);
             demand = generator.step(Step);

@@ -7,6 +7,7 @@
 #include <takt/twin/drive_traits.hpp>
 #include <takt/twin/twin_params.hpp>
 
+#include "drive_objects.hpp"
 #include "homing.hpp"
 #include "mailbox_server.hpp"
 #include "motion_generator.hpp"
@@ -14,27 +15,12 @@
 #include "object_dictionary.hpp"
 #include "position_scale.hpp"
 #include "servo.hpp"
+#include "set_points.hpp"
 
 namespace takt::twin {
 
-/// The objects of the drive profile that the simulated drive reads and writes.
-struct DriveObjects {
-    DriveObjects(ObjectDictionary& dictionary, const DriveTraits& traits);
-
-    ObjectRef errorRegister, errorCode, controlWord, statusWord;
-    ObjectRef quickStopOption, shutdownOption, disableOption;
-    ObjectRef mode, modeDisplay;
-    ObjectRef positionActual, positionDemand, velocityActual, torqueActual, followingError;
-    ObjectRef followingWindow, followingTimeout;
-    ObjectRef targetPosition, profileDeceleration, quickStopDeceleration;
-    ObjectRef positiveTorque, negativeTorque;
-    ObjectRef homeOffset, homingMethod, homingFast, homingSlow, homingAcceleration;
-    ObjectRef homingCurrent, homingOffsetMode, homingOffsetSpeed;
-    ObjectRef digitalInputs, panelCode;
-};
-
-/// A CiA 402 servo drive with its motor: state machine, cyclic synchronous position and homing
-/// modes, supervision. It talks to the bus through its object dictionary only.
+/// A CiA 402 servo drive with its motor: state machine, modes of operation, supervision. It talks
+/// to the bus through its object dictionary only.
 ///
 /// `advance` runs the control loop up to an instant; `cycle`, once per SYNC0, takes the new outputs
 /// and leaves the inputs.
@@ -62,7 +48,8 @@ public:
 
 private:
     using State = core::cia402::DriveState;
-    enum class Source : std::uint8_t { Hold, Interpolator, Generator };
+    /// Where the demand comes from; Speed and Torque leave the position open.
+    enum class Source : std::uint8_t { Hold, Interpolator, Generator, Speed, Torque };
     enum class Command : std::uint8_t {
         None,
         DisableVoltage,
@@ -71,7 +58,13 @@ private:
         SwitchOn,
         Enable
     };
-    enum class Stop : std::uint8_t { None, QuickStop, Shutdown, Disable };
+    enum class Stop : std::uint8_t { None, QuickStop, Shutdown, Disable, Fault };
+    /// Positions in user counts that a target may not leave; `active` or none.
+    struct SoftLimits {
+        bool active{false};
+        std::int64_t minimum{0};
+        std::int64_t maximum{0};
+    };
 
     // drive_states.cpp: IEC 61800-7-201 clause 6.
     [[nodiscard]] static Command decode(std::uint16_t controlWord) noexcept;
@@ -84,30 +77,62 @@ private:
     void powerOn() noexcept;
     void powerOff(State next) noexcept;
     void fail(std::uint16_t code, std::uint16_t panel, std::uint8_t errorRegister) noexcept;
+    void beginFaultStop(std::int64_t reaction) noexcept;
     void resetFault() noexcept;
     [[nodiscard]] std::int64_t option(ObjectRef object, std::int16_t fixed) const noexcept;
 
-    // drive.cpp: motion and supervision.
-    void selectMode() noexcept;
+    // drive.cpp: demand, supervision.
+    void selectMode(std::uint16_t controlWord) noexcept;
+    void enterMode(bool bit4) noexcept;
     void stepMode(std::uint16_t controlWord) noexcept;
+    void stepControl(const TorqueBounds& bounds) noexcept;
+    void nextDemand() noexcept;
+    void interpolate() noexcept;
+    void hold(double position) noexcept;
+    void rampDown(double deceleration) noexcept;
+    void superviseFollowing() noexcept;
+    void superviseTarget() noexcept;
+    [[nodiscard]] TorqueBounds torqueBounds() const noexcept;
+
+    // drive_cyclic.cpp: CSP, CSV, CST and PT.
     void stepPosition(std::uint16_t controlWord) noexcept;
+    void stepVelocity(std::uint16_t controlWord) noexcept;
+    void stepTorque(std::uint16_t controlWord) noexcept;
+    void interpolateTo(double target) noexcept;
+    [[nodiscard]] bool haltCyclic(std::uint16_t controlWord) noexcept;
+    [[nodiscard]] SoftLimits softLimits() const noexcept;
+    [[nodiscard]] double speedWithinLimits(double velocity, double deceleration) noexcept;
+
+    // drive_profile.cpp: PP, PV and homing.
+    void stepProfilePosition(std::uint16_t controlWord) noexcept;
+    void takeSetPoint(std::uint16_t controlWord) noexcept;
+    void startSetPoint() noexcept;
+    void stepProfileVelocity(std::uint16_t controlWord) noexcept;
     void stepHoming(std::uint16_t controlWord) noexcept;
     void startHoming() noexcept;
     void takeHome() noexcept;
-    void interpolateTo(double target) noexcept;
-    void hold(double position) noexcept;
-    void rampDown(double deceleration) noexcept;
-    void nextDemand() noexcept;
-    void superviseFollowing() noexcept;
+
+    // drive_units.cpp
     [[nodiscard]] double velocityTurns(std::int64_t value) const noexcept;
+    [[nodiscard]] double rate(ObjectRef object) const noexcept;
+    [[nodiscard]] double speedLimit(bool profile) const noexcept;
+    [[nodiscard]] double haltDeceleration() const noexcept;
+    [[nodiscard]] double turnsOf(std::int64_t counts) const noexcept;
     [[nodiscard]] std::int64_t userPosition(double turns) const noexcept;
+    [[nodiscard]] bool limitAhead(double velocity) const noexcept;
     [[nodiscard]] bool motorStands() const noexcept;
+    [[nodiscard]] bool inMode(core::cia402::Mode mode) const noexcept {
+        return activeMode_ == static_cast<std::int8_t>(mode);
+    }
 
     // drive_report.cpp
     void report(bool outputsValid, bool dcLocked) noexcept;
     [[nodiscard]] std::uint16_t statusWord(bool outputsValid, bool dcLocked) const noexcept;
     [[nodiscard]] std::uint16_t modeBits() const noexcept;
     [[nodiscard]] std::uint16_t homingBits() const noexcept;
+    [[nodiscard]] std::uint16_t positionBits() const noexcept;
+    [[nodiscard]] std::uint16_t profileBits() const noexcept;
+    [[nodiscard]] std::uint16_t velocityBits() const noexcept;
 
     const DriveTraits& traits_;
     ObjectDictionary& dictionary_;
@@ -143,8 +168,16 @@ private:
     bool homed_{false};
     bool blocked_{false};  ///< a limit switch holds the axis back
     bool halted_{false};
+    bool softLimited_{false};  ///< a software limit does
+    SetPoints setPoints_;
     double torque_{0.0};
+    double torqueTarget_{0.0};        ///< Nm, of the torque modes
+    double torqueDemand_{0.0};        ///< Nm, on its slope to the target
+    double torqueStep_{0.0};          ///< Nm per control step, 0 = at once
+    double torqueSpeed_{0.0};         ///< turns/s, not to be exceeded in the torque modes
     std::int64_t followingError_{0};  ///< user counts
+    core::Duration reachedTime_{0};   ///< time within the target window
+    bool reached_{false};
     core::Duration followingTime_{0};
     bool followingFault_{false};
 };

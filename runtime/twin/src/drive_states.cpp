@@ -20,6 +20,11 @@ constexpr std::int64_t QuickStopByRamp = 2;
 constexpr std::int64_t QuickStopByProfileStay = 5;
 constexpr std::int64_t QuickStopByRampStay = 6;
 
+// 605Eh; more than 2 stops at the limit of the current or voltage.
+constexpr std::int64_t FaultReactionCoast = 0;
+constexpr std::int64_t FaultReactionByProfile = 1;
+constexpr std::int64_t FaultReactionByRamp = 2;
+
 }  // namespace
 
 Drive::Command Drive::decode(std::uint16_t controlWord) noexcept {
@@ -69,8 +74,8 @@ void Drive::stepStates(std::uint16_t controlWord) noexcept {
             stepQuickStop(command);
             break;
         case State::FaultReactionActive:
-            // The power stage was switched off when the fault came; the state shows for one cycle.
-            state_ = State::Fault;
+            // Without a stop the power stage is off already; the state shows for one cycle.
+            if (stop_ == Stop::None) state_ = State::Fault;
             break;
         case State::Fault:
             if (reset) resetFault();
@@ -104,6 +109,7 @@ void Drive::stepQuickStop(Command command) noexcept {
     } else if (command == Command::Enable && quickStopStays_) {
         stop_ = Stop::None;
         hold(demand_.position);
+        enterMode(true);
         state_ = State::OperationEnabled;
     }
 }
@@ -118,8 +124,7 @@ void Drive::beginStop(Stop stop) noexcept {
     }
     stop_ = stop;
     homing_.clear();
-    rampDown(velocityTurns(
-        static_cast<std::int64_t>(dictionary_.getUnsigned(objects_.profileDeceleration))));
+    rampDown(rate(objects_.profileDeceleration));
 }
 
 void Drive::beginQuickStop() noexcept {
@@ -132,13 +137,10 @@ void Drive::beginQuickStop() noexcept {
     state_ = State::QuickStopActive;
     quickStopStays_ = code >= QuickStopByProfileStay;
     homing_.clear();
-    const auto ramp = [&](ObjectRef object) {
-        return velocityTurns(static_cast<std::int64_t>(dictionary_.getUnsigned(object)));
-    };
     if (code == QuickStopByProfile || code == QuickStopByProfileStay) {
-        rampDown(ramp(objects_.profileDeceleration));
+        rampDown(rate(objects_.profileDeceleration));
     } else if (code == QuickStopByRamp || code == QuickStopByRampStay) {
-        rampDown(ramp(objects_.quickStopDeceleration));
+        rampDown(rate(objects_.quickStopDeceleration));
     } else {
         hold(motor_.position());  // at once, with all the torque there is
     }
@@ -160,6 +162,9 @@ void Drive::finishStop() noexcept {
         case Stop::Disable:
             powerOff(State::SwitchedOn);
             return;
+        case Stop::Fault:
+            powerOff(State::Fault);
+            return;
     }
 }
 
@@ -167,10 +172,10 @@ void Drive::powerOn() noexcept {
     state_ = State::OperationEnabled;
     powered_ = true;
     stop_ = Stop::None;
-    halted_ = false;
-    blocked_ = false;
     servo_.reset(motor_);
+    torque_ = 0.0;
     hold(motor_.position());
+    enterMode((lastControl_ & cia::HomingStart) != 0);
 }
 
 void Drive::powerOff(State next) noexcept {
@@ -178,13 +183,19 @@ void Drive::powerOff(State next) noexcept {
     powered_ = false;
     stop_ = Stop::None;
     blocked_ = false;
+    softLimited_ = false;
     enabling_ = core::Duration{-1};
     if (homing_.state() != Homing::State::Done) homing_.clear();
 }
 
 void Drive::fail(std::uint16_t code, std::uint16_t panel, std::uint8_t errorRegister) noexcept {
     if (state_ == State::Fault || state_ == State::FaultReactionActive) return;
-    powerOff(powered_ ? State::FaultReactionActive : State::Fault);
+    const std::int64_t reaction = dictionary_.getSigned(objects_.faultOption);
+    if (powered_ && reaction != FaultReactionCoast) {
+        beginFaultStop(reaction);
+    } else {
+        powerOff(powered_ ? State::FaultReactionActive : State::Fault);
+    }
     dictionary_.set(objects_.errorCode, code);
     dictionary_.set(objects_.errorRegister, errorRegister);
     dictionary_.set(objects_.panelCode, panel);
@@ -195,6 +206,18 @@ void Drive::fail(std::uint16_t code, std::uint16_t panel, std::uint8_t errorRegi
     emergency.data[0] = static_cast<std::uint8_t>(panel);
     emergency.data[1] = static_cast<std::uint8_t>(panel >> 8);
     emergency_ = emergency;
+}
+
+void Drive::beginFaultStop(std::int64_t reaction) noexcept {
+    state_ = State::FaultReactionActive;
+    stop_ = Stop::Fault;
+    homing_.clear();
+    // The demand may be far ahead of a motor that could not follow.
+    hold(motor_.position());
+    demand_.velocity = motor_.velocity();
+    if (reaction == FaultReactionByProfile) rampDown(rate(objects_.profileDeceleration));
+    if (reaction == FaultReactionByRamp) rampDown(rate(objects_.quickStopDeceleration));
+    if (reaction > FaultReactionByRamp) demand_.velocity = 0.0;  // with all the torque there is
 }
 
 void Drive::resetFault() noexcept {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <takt/core/cia402.hpp>
 #include <takt/twin/drive_traits.hpp>
 
 #include "homing_sequence.hpp"
@@ -29,6 +28,16 @@ constexpr DriveTraits makeCd300e() {
     traits.shutdownDefault = 0;
     traits.disableDefault = 0;
     traits.homedInBit15 = true;
+    traits.modes = 0x3AD;
+    traits.startsOnModeChange = true;
+    traits.changeOnSetPoint = true;
+    traits.limitsInTorqueModes = false;
+    traits.torqueModeSpeedObject = 0x4010;
+    traits.torqueModeSpeedSubindex = 0x6A;
+    traits.softLimitSwitchObject = 0x4010;
+    traits.softLimitSwitchSubindex = 0x4A;
+    traits.softLimitsYieldToSwitches = true;
+    traits.softLimitsLessHomeOffset = false;
     traits.truncatesPositions = true;
     traits.homing.methods = HomingMethods::WithHardStops;
     traits.homing.reference = HomeReference::Standstill;
@@ -58,7 +67,11 @@ constexpr DriveTraits makeRa() {
     // Transition 16 is listed, so Quick stop active is a resting state after a ramp by 6085h.
     traits.quickStopDefault = 6;
     traits.disableDefault = 0;
-    traits.haltInCsp = true;
+    traits.haltInCyclicModes = true;
+    // 6502h reads 3A0h, without PP, which two chapters describe.
+    traits.modes = 0x3A1;
+    traits.torqueSlopeIsTime = true;
+    traits.profileSpeedInTorque = true;
     traits.dcLockedInBit8 = true;
     traits.zeroSpeedInBit14 = true;
     traits.unit = MotionUnit::TenthRpm;
@@ -72,6 +85,9 @@ constexpr DriveTraits makeRa() {
 constexpr DriveTraits makeGeneric() {
     DriveTraits traits;
     traits.name = "generic";
+    traits.modes = 0x3AD;
+    traits.faultReactionDefault = 2;
+    traits.changeOnSetPoint = true;
     return traits;
 }
 
@@ -91,9 +107,7 @@ bool DriveTraits::allowsCycle(core::Duration cycle) const noexcept {
 }
 
 bool DriveTraits::supportsMode(std::int8_t mode) const noexcept {
-    using core::cia402::Mode;
-    return mode == static_cast<std::int8_t>(Mode::CyclicSynchronousPosition) ||
-           mode == static_cast<std::int8_t>(Mode::Homing);
+    return mode >= 1 && mode <= 32 && (modes >> (mode - 1) & 1U) != 0;
 }
 
 bool DriveTraits::supportsHoming(std::int8_t method) const noexcept {

@@ -70,17 +70,34 @@ struct DriveTraits {
     std::uint8_t errorRegisterBus{0x10};     ///< 1001h for bus faults
 
     // Stops. −1: the object does not exist and the number behind it applies.
-    bool stopOptions{true};            ///< 605Ah, 605Bh, 605Ch exist
-    std::int16_t quickStopDefault{2};  ///< 605Ah
-    std::int16_t shutdownDefault{0};   ///< 605Bh
-    std::int16_t disableDefault{1};    ///< 605Ch
-    bool quickStopOneUsesProfileDeceleration{true};
-    bool haltInCsp{false};  ///< controlword bit 8 stops the axis in CSP
+    bool stopOptions{true};                ///< 605Ah, 605Bh, 605Ch exist
+    std::int16_t quickStopDefault{2};      ///< 605Ah
+    std::int16_t shutdownDefault{0};       ///< 605Bh
+    std::int16_t disableDefault{1};        ///< 605Ch
+    std::int16_t haltDefault{1};           ///< 605Dh
+    std::int16_t faultReactionDefault{0};  ///< 605Eh
+    bool haltInCyclicModes{false};         ///< controlword bit 8 stops the axis in CSP and CSV
 
     // Statusword
     bool dcLockedInBit8{false};
     bool zeroSpeedInBit14{false};
     bool homedInBit15{false};
+
+    // Modes
+    std::uint32_t modes{0};          ///< as 6502h: bit n is mode n + 1
+    bool startsOnModeChange{false};  ///< controlword bit 4 counts when PP or HM is entered
+    bool changeOnSetPoint{false};    ///< PP: controlword bit 9 passes the target at speed
+    bool relativeToActual{
+        false};  ///< PP: bit 6 adds to the actual position, not to the last target
+    bool torqueSlopeIsTime{false};           ///< 6087h: ms from 0 to rated torque instead of ‰/s
+    bool profileSpeedInTorque{false};        ///< 607Fh limits the speed in the torque modes
+    bool limitsInTorqueModes{true};          ///< limit switches act there
+    std::uint16_t torqueModeSpeedObject{0};  ///< rpm; 0 = none
+    std::uint8_t torqueModeSpeedSubindex{0};
+    std::uint16_t softLimitSwitchObject{0};  ///< 1 turns the software limits on; 0 = always on
+    std::uint8_t softLimitSwitchSubindex{0};
+    bool softLimitsYieldToSwitches{false};  ///< void when limit switches are wired
+    bool softLimitsLessHomeOffset{true};    ///< once homed, 607Dh − 607Ch
 
     // Position and homing
     MotionUnit unit{MotionUnit::Counts};
