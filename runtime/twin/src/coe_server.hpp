@@ -11,12 +11,15 @@
 
 namespace takt::twin {
 
+class DriveParameters;
+
 /// The SDO server of a device (ETG.1000.6 clause 5.6.2): expedited, normal and segmented transfers.
 /// Complete access is refused, which masters must take for an answer.
 class CoeServer {
 public:
-    CoeServer(const DriveTraits& traits, ObjectDictionary& dictionary, PdoConfiguration& pdos)
-        : traits_{traits}, dictionary_{dictionary}, pdos_{pdos} {}
+    CoeServer(const DriveTraits& traits, ObjectDictionary& dictionary, PdoConfiguration& pdos,
+              DriveParameters& parameters)
+        : traits_{traits}, dictionary_{dictionary}, pdos_{pdos}, parameters_{parameters} {}
 
     /// rt. Answers one SDO request. `request` and `reply` begin behind the CoE header.
     /// \return bytes of the reply; 0 = no reply
@@ -50,6 +53,7 @@ private:
     const DriveTraits& traits_;
     ObjectDictionary& dictionary_;
     PdoConfiguration& pdos_;
+    DriveParameters& parameters_;
 
     Transfer transfer_{Transfer::None};
     std::uint16_t index_{0};

@@ -29,6 +29,9 @@ Drive::Drive(const TwinDeviceParams& params, const DriveTraits& traits,
       subSteps_{atLeastOne(params.subSteps)},
       stepSeconds_{static_cast<double>(cycle.count()) / NanosecondsPerSecond / subSteps_},
       servo_{motor_, stepSeconds_, traits.ratedTorque * traits.torqueLimit} {
+    dictionary_.set(objects_.encoderIncrements, PositionScale::IncrementsPerTurn);
+    dictionary_.set(objects_.feed, params.countsPerTurn);
+    if (traits_.gearObjects) takeGear();
     hold(motor_.position());
     report(false, false);
 }

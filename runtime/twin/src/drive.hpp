@@ -37,9 +37,14 @@ public:
     void advance(std::uint32_t steps) noexcept;
     /// rt. One cycle. `outputsValid`: the device is in OP. `dcLocked`: SYNC0 is running.
     void cycle(bool outputsValid, bool dcLocked) noexcept;
+    /// rt. The electronic gear as 6091h and 6092h have it now. \pre !powered()
+    void takeGear() noexcept;
+    /// rt. The drive's processor starts again; it was not in operation or is torn out of it.
+    void restart() noexcept;
     /// rt. Process data stopped while the device was in OP.
     void communicationLost() noexcept;
 
+    [[nodiscard]] bool powered() const noexcept { return powered_; }
     [[nodiscard]] std::uint32_t subSteps() const noexcept { return subSteps_; }
     [[nodiscard]] core::cia402::DriveState state() const noexcept { return state_; }
     [[nodiscard]] const Motor& motor() const noexcept { return motor_; }
@@ -165,6 +170,7 @@ private:
     double interpolationEnd_{0.0};
     std::int64_t target_{0};  ///< user counts, unwrapped
     std::int64_t zero_{0};    ///< increments at which the user position is 0
+    bool gearValid_{true};
     bool homed_{false};
     bool blocked_{false};  ///< a limit switch holds the axis back
     bool halted_{false};

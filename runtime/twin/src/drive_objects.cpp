@@ -44,6 +44,16 @@ DriveObjects::DriveObjects(ObjectDictionary& dictionary, const DriveTraits& trai
     addMotion(dictionary, traits);
     addLimits(dictionary, traits);
     addHoming(dictionary);
+    addGear(dictionary);
+}
+
+void DriveObjects::addGear(ObjectDictionary& dictionary) {
+    const Maker make{dictionary};
+    encoderIncrements = make(0x608F, DataType::Unsigned32, 0, 1);
+    gearMotor = make(0x6091, DataType::Unsigned32, 1, 1);
+    gearShaft = make(0x6091, DataType::Unsigned32, 1, 2);
+    feed = make(0x6092, DataType::Unsigned32, 0, 1);
+    feedShaft = make(0x6092, DataType::Unsigned32, 1, 2);
 }
 
 void DriveObjects::addMotion(ObjectDictionary& dictionary, const DriveTraits& traits) {

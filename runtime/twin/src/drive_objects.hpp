@@ -26,12 +26,14 @@ struct DriveObjects {
     ObjectRef softLimitsOn, softLimitMinimum, softLimitMaximum;
     ObjectRef homeOffset, homingMethod, homingFast, homingSlow, homingAcceleration;
     ObjectRef homingCurrent, homingOffsetMode, homingOffsetSpeed;
+    ObjectRef encoderIncrements, gearMotor, gearShaft, feed, feedShaft;
     ObjectRef digitalInputs;
 
 private:
     void addMotion(ObjectDictionary& dictionary, const DriveTraits& traits);
     void addLimits(ObjectDictionary& dictionary, const DriveTraits& traits);
     void addHoming(ObjectDictionary& dictionary);
+    void addGear(ObjectDictionary& dictionary);
 };
 
 }  // namespace takt::twin

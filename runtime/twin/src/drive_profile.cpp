@@ -108,8 +108,8 @@ void Drive::startHoming() noexcept {
     settings.slowSpeed = velocityTurns(number(objects_.homingSlow));
     settings.acceleration = rate(objects_.homingAcceleration);
     settings.movesToOffset = traits_.homing.movesToOffset && number(objects_.homingOffsetMode) == 0;
-    settings.offset = static_cast<double>(dictionary_.getSigned(objects_.homeOffset)) /
-                      static_cast<double>(scale_.countsPerTurn());
+    settings.offset =
+        static_cast<double>(dictionary_.getSigned(objects_.homeOffset)) / scale_.countsPerTurn();
     settings.offsetSpeed =
         static_cast<double>(number(objects_.homingOffsetSpeed)) / SecondsPerMinute;
     settings.blockTorque = static_cast<double>(number(objects_.homingCurrent)) / TenthsPerAmpere *

@@ -127,8 +127,7 @@ std::uint16_t Drive::statusWord(bool outputsValid, bool dcLocked) const noexcept
 }
 
 void Drive::report(bool outputsValid, bool dcLocked) noexcept {
-    const auto perTurn =
-        traits_.unit == MotionUnit::TenthRpm ? 600.0 : static_cast<double>(scale_.countsPerTurn());
+    const auto perTurn = traits_.unit == MotionUnit::TenthRpm ? 600.0 : scale_.countsPerTurn();
     dictionary_.set(objects_.statusWord, statusWord(outputsValid, dcLocked));
     dictionary_.set(objects_.modeDisplay, activeMode_);
     dictionary_.set(objects_.positionActual, userPosition(motor_.position()));

@@ -20,6 +20,8 @@ constexpr std::int64_t QuickStopByRamp = 2;
 constexpr std::int64_t QuickStopByProfileStay = 5;
 constexpr std::int64_t QuickStopByRampStay = 6;
 
+constexpr std::uint16_t GearFault = 0xFF09;  // CD300E: gear ratio outside its range
+
 // 605Eh; more than 2 stops at the limit of the current or voltage.
 constexpr std::int64_t FaultReactionCoast = 0;
 constexpr std::int64_t FaultReactionByProfile = 1;
@@ -64,7 +66,11 @@ void Drive::stepStates(std::uint16_t controlWord) noexcept {
             if (command == Command::Enable) {
                 enabling_ =
                     enabling_ < core::Duration{0} ? core::Duration{0} : enabling_ + cycleTime_;
-                if (enabling_ >= traits_.enableTime) powerOn();
+                if (!gearValid_) {
+                    fail(GearFault, GearFault, traits_.errorRegisterMotion);
+                } else if (enabling_ >= traits_.enableTime) {
+                    powerOn();
+                }
             }
             break;
         case State::OperationEnabled:
@@ -227,6 +233,18 @@ void Drive::resetFault() noexcept {
     dictionary_.set(objects_.errorCode, 0);
     dictionary_.set(objects_.errorRegister, 0);
     dictionary_.set(objects_.panelCode, 0);
+}
+
+void Drive::restart() noexcept {
+    powerOff(State::NotReadyToSwitchOn);
+    resetFault();
+    state_ = State::NotReadyToSwitchOn;
+    sinceStart_ = core::Duration{0};
+    dictionary_.set(objects_.mode, traits_.powerUpMode);
+    homing_.clear();
+    homed_ = false;
+    zero_ = 0;  // the absolute encoder knows where it is, not where home was
+    hold(motor_.position());
 }
 
 void Drive::communicationLost() noexcept {

@@ -28,6 +28,8 @@ constexpr DriveTraits makeCd300e() {
     traits.shutdownDefault = 0;
     traits.disableDefault = 0;
     traits.homedInBit15 = true;
+    traits.storesByCommand = true;
+    traits.gearObjects = true;
     traits.modes = 0x3AD;
     traits.startsOnModeChange = true;
     traits.changeOnSetPoint = true;
@@ -70,6 +72,7 @@ constexpr DriveTraits makeRa() {
     traits.haltInCyclicModes = true;
     // 6502h reads 3A0h, without PP, which two chapters describe.
     traits.modes = 0x3A1;
+    traits.volatilePairs = true;
     traits.torqueSlopeIsTime = true;
     traits.profileSpeedInTorque = true;
     traits.dcLockedInBit8 = true;

@@ -1,6 +1,7 @@
 // What the drive's objects mean in turns of the motor shaft.
 
 #include <algorithm>
+#include <numeric>
 
 #include "drive.hpp"
 
@@ -14,15 +15,41 @@ constexpr double Standstill = 0.01;   // turns/s
 constexpr double HardestStop = 1e4;   // turns/s², where a ramp is 0
 constexpr double FastestMotor = 1e4;  // turns/s, where no limit is set
 
+constexpr std::int64_t SmallestGearDivisor = 1000;  // increments per count: 1/1000 …
+constexpr std::int64_t LargestGear = 8000;          // … to 8000
+
+// Whole numbers that a gear may consist of, so that 64 bits are enough for every conversion.
+constexpr std::int64_t MostCounts = std::int64_t{1} << 31;
+constexpr std::int64_t MostTurns = 256;
+
 constexpr std::int64_t HaltByQuickStopRamp = 2;  // 605Dh
 
 }  // namespace
 
 double Drive::velocityTurns(std::int64_t value) const noexcept {
-    const double perTurn = traits_.unit == MotionUnit::TenthRpm
-                               ? TenthRpmPerTurn
-                               : static_cast<double>(scale_.countsPerTurn());
+    const double perTurn =
+        traits_.unit == MotionUnit::TenthRpm ? TenthRpmPerTurn : scale_.countsPerTurn();
     return static_cast<double>(value) / perTurn;
+}
+
+void Drive::takeGear() noexcept {
+    const auto number = [&](ObjectRef object) {
+        return static_cast<std::int64_t>(dictionary_.getUnsigned(object));
+    };
+    // Increments per count = encoder · motor / shaft / (feed / shaft revolutions).
+    const std::int64_t common = std::gcd(number(objects_.gearShaft) * number(objects_.feed),
+                                         number(objects_.gearMotor) * number(objects_.feedShaft));
+    const std::int64_t divisor = common > 0 ? common : 1;
+    const std::int64_t counts = number(objects_.gearShaft) * number(objects_.feed) / divisor;
+    const std::int64_t turns = number(objects_.gearMotor) * number(objects_.feedShaft) / divisor;
+    gearValid_ = counts > 0 && turns > 0 && counts <= MostCounts && turns <= MostTurns;
+    if (gearValid_) {
+        const std::int64_t increments = PositionScale::IncrementsPerTurn * turns;
+        gearValid_ =
+            increments <= LargestGear * counts && increments * SmallestGearDivisor >= counts;
+    }
+    if (!gearValid_) return;
+    scale_ = PositionScale{counts, traits_.truncatesPositions, turns};
 }
 
 double Drive::rate(ObjectRef object) const noexcept {

@@ -8,6 +8,7 @@
 
 #include "coe_server.hpp"
 #include "drive.hpp"
+#include "drive_parameters.hpp"
 #include "event_queue.hpp"
 #include "mailbox_server.hpp"
 #include "object_dictionary.hpp"
@@ -86,9 +87,10 @@ private:
     ObjectDictionary dictionary_;
     SyncObjects syncObjects_;
     PdoConfiguration pdos_;
+    Drive drive_;
+    DriveParameters parameters_;
     CoeServer coe_;
     MailboxServer mailbox_;
-    Drive drive_;
 
     wire::AlState state_{wire::AlState::Init};
     bool waitingForOp_{false};

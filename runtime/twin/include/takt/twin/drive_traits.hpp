@@ -99,6 +99,11 @@ struct DriveTraits {
     bool softLimitsYieldToSwitches{false};  ///< void when limit switches are wired
     bool softLimitsLessHomeOffset{true};    ///< once homed, 607Dh − 607Ch
 
+    // Parameters
+    bool storesByCommand{false};  ///< 1010h:01 and :04 as the CD300E has them
+    bool volatilePairs{false};    ///< 2xxxh is stored, 3xxxh the same in memory
+    bool gearObjects{false};      ///< 6091h and 6092h set the gear, within 1/1000 to 8000
+
     // Position and homing
     MotionUnit unit{MotionUnit::Counts};
     bool truncatesPositions{false};  ///< electronic gear cuts towards zero instead of rounding
