@@ -50,8 +50,8 @@ TorqueBounds Drive::torqueBounds() const noexcept {
     };
     TorqueBounds bounds{torque(objects_.positiveTorque), torque(objects_.negativeTorque), 0.0};
     if (source_ == Source::Torque) {
-        if (traits_.limitsInTorqueModes && motor_.positiveLimit()) bounds.positive = 0.0;
-        if (traits_.limitsInTorqueModes && motor_.negativeLimit()) bounds.negative = 0.0;
+        if (traits_.limitsInTorqueModes && positiveLimit()) bounds.positive = 0.0;
+        if (traits_.limitsInTorqueModes && negativeLimit()) bounds.negative = 0.0;
     } else if (source_ == Source::Interpolator || source_ == Source::Speed) {
         bounds.offset =
             static_cast<double>(dictionary_.getSigned(objects_.torqueOffset)) * perMille;
@@ -67,9 +67,11 @@ void Drive::advance(std::uint32_t steps) noexcept {
     }
     const TorqueBounds bounds = torqueBounds();
     for (std::uint32_t i = 0; i < steps; ++i) {
+        const double before = motor_.position();
         stepControl(bounds);
         motor_.step(torque_, false, stepSeconds_);
         nextDemand();
+        if (probe_.armed()) probe_.step(probeSignals(before), probeTime());
     }
 }
 
@@ -131,7 +133,9 @@ void Drive::cycle(bool outputsValid, bool dcLocked) noexcept {
     const auto control =
         outputsValid ? static_cast<std::uint16_t>(dictionary_.getUnsigned(objects_.controlWord))
                      : cia::DisableVoltage;
+    readInputs();
     superviseFollowing();
+    superviseLoad();
     stepStates(control);
     selectMode(control);
     if (state_ == State::OperationEnabled && stop_ == Stop::None) stepMode(control);
@@ -219,6 +223,22 @@ void Drive::superviseFollowing() noexcept {
     if (followingTime_ <= timeout) return;
     followingFault_ = true;
     fail(traits_.followingErrorCode, traits_.followingErrorPanel, traits_.errorRegisterMotion);
+}
+
+void Drive::superviseLoad() noexcept {
+    if (traits_.overloadAlarm == 0) return;
+    const double ratio = torque_ / traits_.ratedTorque;
+    load_ += (ratio * ratio - load_) * static_cast<double>(cycleTime_.count()) /
+             static_cast<double>(traits_.overloadTime.count());
+    constexpr double WarningShare = 0.95;
+    if (powered_ && load_ > 1.0) raiseAlarm(traits_.overloadAlarm);
+    if (load_ > WarningShare) {
+        if (!overloaded_) raiseAlarm(traits_.overloadWarning);
+        overloaded_ = true;
+    } else if (overloaded_) {
+        overloaded_ = false;
+        clearWarning();  // by itself
+    }
 }
 
 void Drive::superviseTarget() noexcept {

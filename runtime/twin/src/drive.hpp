@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <takt/core/cia402.hpp>
@@ -16,6 +17,7 @@
 #include "position_scale.hpp"
 #include "servo.hpp"
 #include "set_points.hpp"
+#include "touch_probe.hpp"
 
 namespace takt::twin {
 
@@ -37,6 +39,8 @@ public:
     void advance(std::uint32_t steps) noexcept;
     /// rt. One cycle. `outputsValid`: the device is in OP. `dcLocked`: SYNC0 is running.
     void cycle(bool outputsValid, bool dcLocked) noexcept;
+    /// rt. An alarm or warning of the drive's manual happens. \return the drive has such a one
+    bool raiseAlarm(std::uint16_t number) noexcept;
     /// rt. The electronic gear as 6091h and 6092h have it now. \pre !powered()
     void takeGear() noexcept;
     /// rt. The drive's processor starts again; it was not in operation or is torn out of it.
@@ -84,6 +88,7 @@ private:
     void fail(std::uint16_t code, std::uint16_t panel, std::uint8_t errorRegister) noexcept;
     void beginFaultStop(std::int64_t reaction) noexcept;
     void resetFault() noexcept;
+    void clearWarning() noexcept;
     [[nodiscard]] std::int64_t option(ObjectRef object, std::int16_t fixed) const noexcept;
 
     // drive.cpp: demand, supervision.
@@ -97,6 +102,7 @@ private:
     void rampDown(double deceleration) noexcept;
     void superviseFollowing() noexcept;
     void superviseTarget() noexcept;
+    void superviseLoad() noexcept;
     [[nodiscard]] TorqueBounds torqueBounds() const noexcept;
 
     // drive_cyclic.cpp: CSP, CSV, CST and PT.
@@ -116,6 +122,23 @@ private:
     void stepHoming(std::uint16_t controlWord) noexcept;
     void startHoming() noexcept;
     void takeHome() noexcept;
+
+    // drive_inputs.cpp: limit and home inputs, touch probes.
+    void readInputs() noexcept;
+    [[nodiscard]] bool virtualInput(std::uint16_t function) const noexcept;
+    [[nodiscard]] std::uint32_t digitalInputs() const noexcept;
+    [[nodiscard]] ProbeSignals probeSignals(double before) const noexcept;
+    void reportProbes() noexcept;
+    /// Microseconds since power-up, what the time stamps count.
+    [[nodiscard]] std::uint32_t probeTime() const noexcept {
+        return static_cast<std::uint32_t>(sinceStart_.count() / 1000);
+    }
+    [[nodiscard]] bool positiveLimit() const noexcept {
+        return motor_.positiveLimit() || forced_.positive;
+    }
+    [[nodiscard]] bool negativeLimit() const noexcept {
+        return motor_.negativeLimit() || forced_.negative;
+    }
 
     // drive_units.cpp
     [[nodiscard]] double velocityTurns(std::int64_t value) const noexcept;
@@ -158,8 +181,10 @@ private:
     Stop stop_{Stop::None};
     bool quickStopStays_{false};
     std::uint16_t lastControl_{0};
-    bool faultInReaction_{false};
-    bool resetWanted_{false};
+    bool resettable_{true};
+    std::uint16_t warning_{0};  ///< number on the display, 0 = none
+    bool overloaded_{false};    ///< its warning has been given
+    double load_{0.0};          ///< 1 = what the motor bears for ever
     std::optional<Emergency> emergency_;
 
     std::int8_t activeMode_{0};
@@ -176,6 +201,9 @@ private:
     bool halted_{false};
     bool softLimited_{false};  ///< a software limit does
     SetPoints setPoints_;
+    TouchProbe probe_;
+    HomingSignals forced_;              ///< by virtual inputs
+    std::array<bool, 2> probeInput_{};  ///< virtual inputs of the probes
     double torque_{0.0};
     double torqueTarget_{0.0};        ///< Nm, of the torque modes
     double torqueDemand_{0.0};        ///< Nm, on its slope to the target

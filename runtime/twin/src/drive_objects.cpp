@@ -45,6 +45,27 @@ DriveObjects::DriveObjects(ObjectDictionary& dictionary, const DriveTraits& trai
     addLimits(dictionary, traits);
     addHoming(dictionary);
     addGear(dictionary);
+    addInputs(dictionary, traits);
+}
+
+void DriveObjects::addInputs(ObjectDictionary& dictionary, const DriveTraits& traits) {
+    const Maker make{dictionary};
+    virtualInputs = make(cia::DigitalOutputs, DataType::Unsigned32, 0, 1);
+    virtualMask = make(cia::DigitalOutputs, DataType::Unsigned32, 0, 2);
+    for (std::uint8_t i = 0; i < inputFunction.size(); ++i) {
+        inputFunction[i] =
+            traits.virtualInputs
+                ? make(static_cast<std::uint16_t>(0x2500 + i), DataType::Unsigned16)
+                : make(0x2402, DataType::Unsigned8, 0, static_cast<std::uint8_t>(i + 1));
+    }
+    probeFunction = make(cia::TouchProbeFunction, DataType::Unsigned16);
+    probeStatus = make(0x60B9, DataType::Unsigned16);
+    for (std::uint16_t i = 0; i < probePosition.size(); ++i) {
+        const auto at = [i](std::uint16_t first) { return static_cast<std::uint16_t>(first + i); };
+        probePosition[i] = make(at(0x60BA), DataType::Integer32);
+        probeTime[i] = make(at(0x60D1), DataType::Unsigned32);
+        probeCount[i] = make(at(0x60D5), DataType::Unsigned16);
+    }
 }
 
 void DriveObjects::addGear(ObjectDictionary& dictionary) {

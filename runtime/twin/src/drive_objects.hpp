@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <takt/twin/drive_traits.hpp>
 
 #include "object_dictionary.hpp"
@@ -28,12 +29,18 @@ struct DriveObjects {
     ObjectRef homingCurrent, homingOffsetMode, homingOffsetSpeed;
     ObjectRef encoderIncrements, gearMotor, gearShaft, feed, feedShaft;
     ObjectRef digitalInputs;
+    ObjectRef virtualInputs, virtualMask;  ///< 60FEh of a drive that takes its inputs from there
+    std::array<ObjectRef, 5> inputFunction;
+    ObjectRef probeFunction, probeStatus;
+    /// First probe rising, falling, second probe rising, falling.
+    std::array<ObjectRef, 4> probePosition, probeTime, probeCount;
 
 private:
     void addMotion(ObjectDictionary& dictionary, const DriveTraits& traits);
     void addLimits(ObjectDictionary& dictionary, const DriveTraits& traits);
     void addHoming(ObjectDictionary& dictionary);
     void addGear(ObjectDictionary& dictionary);
+    void addInputs(ObjectDictionary& dictionary, const DriveTraits& traits);
 };
 
 }  // namespace takt::twin

@@ -16,11 +16,6 @@ constexpr std::uint16_t Homed = 0x8000;                // bit 15
 constexpr std::uint16_t SetPointAcknowledge = 0x1000;  // Profile position
 constexpr std::uint16_t SpeedZero = 0x1000;            // Profile velocity
 
-// 60FDh, CiA 402 bits.
-constexpr std::uint32_t NegativeLimitInput = 0x1;
-constexpr std::uint32_t PositiveLimitInput = 0x2;
-constexpr std::uint32_t HomeInput = 0x4;
-
 std::uint16_t stateBits(cia::DriveState state) noexcept {
     using State = cia::DriveState;
     switch (state) {
@@ -120,6 +115,7 @@ std::uint16_t Drive::statusWord(bool outputsValid, bool dcLocked) const noexcept
     auto word = static_cast<std::uint16_t>(stateBits(state_) | modeBits());
     if (state_ != State::NotReadyToSwitchOn) word |= cia::VoltageEnabled;
     if (outputsValid) word |= cia::Remote;
+    if (warning_ != 0) word |= cia::Warning;
     if (traits_.dcLockedInBit8 && dcLocked) word |= DcLocked;
     if (traits_.zeroSpeedInBit14 && motorStands()) word |= ZeroSpeed;
     if (traits_.homedInBit15 && homed_) word |= Homed;
@@ -143,10 +139,8 @@ void Drive::report(bool outputsValid, bool dcLocked) noexcept {
     dictionary_.set(objects_.torqueActual,
                     static_cast<std::int64_t>(torque_ / traits_.ratedTorque * 1000.0));
     dictionary_.set(objects_.followingError, followingError_);
-    const std::uint32_t inputs = (motor_.negativeLimit() ? NegativeLimitInput : 0U) |
-                                 (motor_.positiveLimit() ? PositiveLimitInput : 0U) |
-                                 (motor_.homeSwitch() ? HomeInput : 0U);
-    dictionary_.set(objects_.digitalInputs, inputs);
+    dictionary_.set(objects_.digitalInputs, digitalInputs());
+    reportProbes();
 }
 
 }  // namespace takt::twin

@@ -1,6 +1,7 @@
 // The power drive state machine of IEC 61800-7-201 clause 6, with the stop options of clause 7.
 
 #include "drive.hpp"
+#include "drive_alarms.hpp"
 
 namespace takt::twin {
 
@@ -46,6 +47,7 @@ void Drive::stepStates(std::uint16_t controlWord) noexcept {
     const bool reset =
         (controlWord & cia::FaultReset) != 0 && (lastControl_ & cia::FaultReset) == 0;
     const bool off = command == Command::DisableVoltage || command == Command::QuickStop;
+    if (reset) clearWarning();
     finishStop();
     if (command != Command::Enable || state_ != State::SwitchedOn) enabling_ = core::Duration{-1};
     switch (state_) {
@@ -84,7 +86,7 @@ void Drive::stepStates(std::uint16_t controlWord) noexcept {
             if (stop_ == Stop::None) state_ = State::Fault;
             break;
         case State::Fault:
-            if (reset) resetFault();
+            if (reset && resettable_) resetFault();
             break;
     }
 }
@@ -196,6 +198,7 @@ void Drive::powerOff(State next) noexcept {
 
 void Drive::fail(std::uint16_t code, std::uint16_t panel, std::uint8_t errorRegister) noexcept {
     if (state_ == State::Fault || state_ == State::FaultReactionActive) return;
+    resettable_ = true;
     const std::int64_t reaction = dictionary_.getSigned(objects_.faultOption);
     if (powered_ && reaction != FaultReactionCoast) {
         beginFaultStop(reaction);
@@ -226,6 +229,32 @@ void Drive::beginFaultStop(std::int64_t reaction) noexcept {
     if (reaction > FaultReactionByRamp) demand_.velocity = 0.0;  // with all the torque there is
 }
 
+bool Drive::raiseAlarm(std::uint16_t number) noexcept {
+    const DriveAlarm* alarm = findAlarm(traits_.name, number);
+    if (alarm == nullptr) return false;
+    const bool failed = state_ == State::Fault || state_ == State::FaultReactionActive;
+    if (alarm->kind == AlarmKind::Warning) {
+        warning_ = number;
+        if (!failed) dictionary_.set(objects_.errorCode, alarm->errorCode);
+        if (!failed) dictionary_.set(objects_.panelCode, number);
+        return true;
+    }
+    if (failed) return true;  // the first one stays
+    fail(alarm->errorCode, number,
+         alarm->kind == AlarmKind::Bus ? traits_.errorRegisterBus : traits_.errorRegisterMotion);
+    resettable_ = alarm->resettable;
+    return true;
+}
+
+void Drive::clearWarning() noexcept {
+    const bool failed = state_ == State::Fault || state_ == State::FaultReactionActive;
+    if (warning_ == 0) return;
+    warning_ = 0;
+    if (failed) return;
+    dictionary_.set(objects_.errorCode, 0);
+    dictionary_.set(objects_.panelCode, 0);
+}
+
 void Drive::resetFault() noexcept {
     state_ = State::SwitchOnDisabled;
     followingFault_ = false;
@@ -238,6 +267,8 @@ void Drive::resetFault() noexcept {
 void Drive::restart() noexcept {
     powerOff(State::NotReadyToSwitchOn);
     resetFault();
+    warning_ = 0;
+    load_ = 0.0;
     state_ = State::NotReadyToSwitchOn;
     sinceStart_ = core::Duration{0};
     dictionary_.set(objects_.mode, traits_.powerUpMode);

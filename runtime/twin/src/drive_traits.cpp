@@ -29,6 +29,8 @@ constexpr DriveTraits makeCd300e() {
     traits.disableDefault = 0;
     traits.homedInBit15 = true;
     traits.storesByCommand = true;
+    traits.overloadAlarm = 0xFF01;
+    traits.overloadWarning = 0x0003;
     traits.gearObjects = true;
     traits.modes = 0x3AD;
     traits.startsOnModeChange = true;
@@ -73,6 +75,10 @@ constexpr DriveTraits makeRa() {
     // 6502h reads 3A0h, without PP, which two chapters describe.
     traits.modes = 0x3A1;
     traits.volatilePairs = true;
+    traits.virtualInputs = true;
+    traits.probeCountsInStatus = true;
+    traits.overloadAlarm = 0x130;
+    traits.overloadWarning = 0x910;
     traits.torqueSlopeIsTime = true;
     traits.profileSpeedInTorque = true;
     traits.dcLockedInBit8 = true;

@@ -82,7 +82,7 @@ std::int64_t Drive::userPosition(double turns) const noexcept {
 }
 
 bool Drive::limitAhead(double velocity) const noexcept {
-    return (velocity > 0.0 && motor_.positiveLimit()) || (velocity < 0.0 && motor_.negativeLimit());
+    return (velocity > 0.0 && positiveLimit()) || (velocity < 0.0 && negativeLimit());
 }
 
 bool Drive::motorStands() const noexcept {

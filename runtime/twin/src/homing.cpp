@@ -19,8 +19,13 @@ double edgeNear(const std::optional<SwitchParams>& zone, double position) noexce
 
 }  // namespace
 
+HomingSignals Homing::signalsOf(const Motor& motor) const noexcept {
+    return {motor.homeSwitch() || forced_.home, motor.positiveLimit() || forced_.positive,
+            motor.negativeLimit() || forced_.negative};
+}
+
 void Homing::sample(const Motor& motor) noexcept {
-    signals_ = {motor.homeSwitch(), motor.positiveLimit(), motor.negativeLimit()};
+    signals_ = signalsOf(motor);
     position_ = motor.position();
 }
 
@@ -78,24 +83,26 @@ bool Homing::happened(const HomingStep& step, const Motor& motor, double torque,
                       const MotionGenerator& generator) noexcept {
     const MechanicsParams& parts = motor.params();
     eventIsIndex_ = step.event == HomingEvent::Index;
-    const auto edge = [&](bool before, bool now, bool on, const std::optional<SwitchParams>& zone) {
-        if (before == now || now != on) return false;
+    const HomingSignals now = signalsOf(motor);
+    const auto edge = [&](bool before, bool after, bool on,
+                          const std::optional<SwitchParams>& zone) {
+        if (before == after || after != on) return false;
         event_ = edgeNear(zone, motor.position());
         return true;
     };
     switch (step.event) {
         case HomingEvent::HomeOn:
-            return edge(signals_.home, motor.homeSwitch(), true, parts.homeSwitch);
+            return edge(signals_.home, now.home, true, parts.homeSwitch);
         case HomingEvent::HomeOff:
-            return edge(signals_.home, motor.homeSwitch(), false, parts.homeSwitch);
+            return edge(signals_.home, now.home, false, parts.homeSwitch);
         case HomingEvent::PositiveOn:
-            return edge(signals_.positive, motor.positiveLimit(), true, parts.positiveLimit);
+            return edge(signals_.positive, now.positive, true, parts.positiveLimit);
         case HomingEvent::PositiveOff:
-            return edge(signals_.positive, motor.positiveLimit(), false, parts.positiveLimit);
+            return edge(signals_.positive, now.positive, false, parts.positiveLimit);
         case HomingEvent::NegativeOn:
-            return edge(signals_.negative, motor.negativeLimit(), true, parts.negativeLimit);
+            return edge(signals_.negative, now.negative, true, parts.negativeLimit);
         case HomingEvent::NegativeOff:
-            return edge(signals_.negative, motor.negativeLimit(), false, parts.negativeLimit);
+            return edge(signals_.negative, now.negative, false, parts.negativeLimit);
         case HomingEvent::HardStop:
             event_ = motor.position();
             return motor.atRest() && distance(torque, 0.0) > settings_.blockTorque;
@@ -124,8 +131,8 @@ bool Homing::blocked(const HomingStep& step, const Motor& motor) const noexcept 
         step.event == HomingEvent::PositiveOn || step.event == HomingEvent::PositiveOff;
     const bool asksNegative =
         step.event == HomingEvent::NegativeOn || step.event == HomingEvent::NegativeOff;
-    return step.direction > 0 ? motor.positiveLimit() && !asksPositive
-                              : motor.negativeLimit() && !asksNegative;
+    const HomingSignals now = signalsOf(motor);
+    return step.direction > 0 ? now.positive && !asksPositive : now.negative && !asksNegative;
 }
 
 void Homing::step(const Motor& motor, double torque, MotionGenerator& generator) noexcept {
@@ -162,7 +169,8 @@ void Homing::step(const Motor& motor, double torque, MotionGenerator& generator)
 
 bool Homing::turnsAtLimit(const HomingStep& step, const Motor& motor) noexcept {
     if (at_ != 0 || sequence_->start != HomingStart::OffHome) return false;
-    const bool limit = step.direction > 0 ? motor.positiveLimit() : motor.negativeLimit();
+    const HomingSignals now = signalsOf(motor);
+    const bool limit = step.direction > 0 ? now.positive : now.negative;
     const HomingSequence* after = limit ? findAfterLimit(settings_.method) : nullptr;
     if (after == nullptr) return false;
     sequence_ = after;

@@ -37,6 +37,9 @@ public:
     /// rt. Starts a run. The generator must hold the present demand.
     void start(const HomingSettings& settings, const Motor& motor,
                MotionGenerator& generator) noexcept;
+    /// rt. Switches that count as active beside those of the mechanics: inputs that the controller
+    /// feeds in over the bus.
+    void force(const HomingSignals& forced) noexcept { forced_ = forced; }
     /// rt. Ramps to standstill.
     void interrupt(MotionGenerator& generator) noexcept;
     /// rt. After each control step, in which the motor was given `torque` (Nm).
@@ -63,6 +66,7 @@ private:
     void settle(const Motor& motor, MotionGenerator& generator) noexcept;
     void arrive(MotionGenerator& generator) noexcept;
     void fail(MotionGenerator& generator) noexcept;
+    [[nodiscard]] HomingSignals signalsOf(const Motor& motor) const noexcept;
     void sample(const Motor& motor) noexcept;
 
     State state_{State::Idle};
@@ -70,6 +74,7 @@ private:
     const HomingSequence* sequence_{nullptr};
     std::size_t at_{0};
     bool stopping_{false};
+    HomingSignals forced_;
     HomingSignals signals_;  ///< at the last step
     double position_{0.0};   ///< at the last step
     double event_{0.0};      ///< exact place of the last event

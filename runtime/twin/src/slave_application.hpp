@@ -42,6 +42,12 @@ public:
     /// rt. An event of the device is due; SYNC0 has been generated already.
     void onEvent(EventKind kind, core::TrueTime now) noexcept;
 
+    /// rt. An alarm of the drive happens now.
+    bool raiseAlarm(std::uint16_t number, core::TrueTime now) noexcept {
+        catchUp(now);
+        return drive_.raiseAlarm(number);
+    }
+
     [[nodiscard]] const Drive& drive() const noexcept { return drive_; }
     [[nodiscard]] wire::AlState state() const noexcept { return state_; }
     [[nodiscard]] std::uint64_t missedOutputs() const noexcept { return missedTotal_; }

@@ -104,6 +104,15 @@ struct DriveTraits {
     bool volatilePairs{false};    ///< 2xxxh is stored, 3xxxh the same in memory
     bool gearObjects{false};      ///< 6091h and 6092h set the gear, within 1/1000 to 8000
 
+    // Inputs and touch probes
+    bool virtualInputs{false};  ///< 60FEh bits 16 to 19 are DI1 to DI4, functions in 2500h to 2503h
+    bool probeCountsInStatus{false};  ///< 60B9h bits 6, 7, 14, 15 count modulo 4
+
+    // Overload: the square of the torque over its rated one, averaged over a time, reaches 1.
+    std::uint16_t overloadAlarm{0};    ///< number on the drive's display; 0 = no such supervision
+    std::uint16_t overloadWarning{0};  ///< from 95 %
+    core::Duration overloadTime{std::chrono::seconds{30}};  ///< no manual gives one
+
     // Position and homing
     MotionUnit unit{MotionUnit::Counts};
     bool truncatesPositions{false};  ///< electronic gear cuts towards zero instead of rounding
