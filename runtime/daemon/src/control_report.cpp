@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "control_server.hpp"
+#include "network_summary.hpp"
 
 namespace takt::daemon {
 
@@ -26,13 +27,13 @@ AxisReport reportOf(const AxisEntry& entry, const ControlNames& names, std::size
     return report;
 }
 
-ProgramReport reportOf(const ProgramEntry& entry, const ProgramHost& program) {
+ProgramReport reportOf(const ProgramEntry& entry, const std::string& programName,
+                       const std::vector<std::string>& watches) {
     ProgramReport report;
-    report.name = program.name();
+    report.name = programName;
     report.state = name(entry.phase, entry.held);
-    const auto& watched = program.watched();
-    for (std::size_t i = 0; i < watched.size() && i < entry.watches.size(); ++i) {
-        report.watches.push_back({watched[i].name, entry.watches[i]});
+    for (std::size_t i = 0; i < watches.size() && i < entry.watches.size(); ++i) {
+        report.watches.push_back({watches[i], entry.watches[i]});
     }
     return report;
 }
@@ -57,14 +58,28 @@ StatusReport ControlServer::report() const {
     if (run.stop.cause != StopCause::None) {
         report.machineStop = describe(run.stop, names.stopInputs, names.programs, names.axes);
     }
-    report.owner = ownerName();
+    report.owner = gate_.ownerName();
+    if (parts_.bridge != nullptr) {
+        report.bridgeProcess = parts_.bridge->process().pid();
+        report.bridgeStarts = parts_.bridge->process().starts();
+        report.bridgePublished = parts_.bridge->published();
+    }
     for (std::size_t i = 0; i < board.axes.size(); ++i) {
         report.axes.push_back(reportOf(board.axes[i].read(), names, i));
     }
     for (std::size_t i = 0; i < board.programs.size(); ++i) {
-        report.programs.push_back(reportOf(board.programs[i].read(), parts_.programs[i]));
+        const ProgramEntry entry = board.programs[i].read();
+        report.programs.push_back(
+            reportOf(entry, names.programs[i], parts_.stock.watchNames(i, entry.instance)));
     }
     return report;
+}
+
+NetworkReport ControlServer::networkReport() const {
+    const DiagnosisBoard& board = parts_.control.diagnosis();
+    std::vector<DeviceEntry> devices;
+    for (const auto& device : board.devices) devices.push_back(device.read());
+    return summarize(parts_.machine, board.run.read(), devices);
 }
 
 std::vector<EventReport> ControlServer::eventsAfter(std::uint64_t number) const {
@@ -78,13 +93,6 @@ std::vector<EventReport> ControlServer::eventsAfter(std::uint64_t number) const 
 double ControlServer::secondsOf(core::CycleNumber cycle) const {
     return static_cast<double>(cycle) *
            std::chrono::duration<double>{parts_.machine.network.cycle}.count();
-}
-
-std::string ControlServer::ownerName() const {
-    const auto owner = clients_.find(owner_);
-    if (owner == clients_.end()) return {};
-    const std::string& who = owner->second.who;
-    return fmt::format("{} (process {})", who.empty() ? "a client" : who, owner->second.pid);
 }
 
 }  // namespace takt::daemon

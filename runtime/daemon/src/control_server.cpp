@@ -5,7 +5,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -22,12 +21,6 @@ using namespace std::chrono_literals;
 
 /// The cycle cannot wake this thread without a system call, so it looks for answers by itself.
 constexpr std::chrono::milliseconds LookAfter = 5ms;
-constexpr std::size_t MostTickets = 256;
-
-ReplyKind kindOf(AnswerKind kind) noexcept {
-    return static_cast<ReplyKind>(kind);
-}
-static_assert(static_cast<int>(ReplyKind::Failed) == static_cast<int>(AnswerKind::Failed));
 
 /// Signals are for the thread that runs the machine.
 void blockSignals() {
@@ -36,15 +29,11 @@ void blockSignals() {
     pthread_sigmask(SIG_BLOCK, &all, nullptr);
 }
 
-std::uint16_t indexOf(const std::vector<std::string>& names, const std::string& name) {
-    return static_cast<std::uint16_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
 }  // namespace
 
 ControlServer::ControlServer(const Parts& parts, const std::filesystem::path& socket,
                              const std::filesystem::path& commandFile)
-    : parts_{parts}, socket_{socket, parts.machine.name} {
+    : parts_{parts}, socket_{socket, parts.machine.name}, gate_{parts.control, parts.stock} {
     if (!commandFile.empty()) commandFile_ = std::make_unique<record::OutputFile>(commandFile);
     // The thread inherits the mask: no signal can reach it before it has set its own.
     sigset_t all;
@@ -73,22 +62,27 @@ void ControlServer::serve() {
     while (!ending_) {
         waitForClients();
         takeAnswers();
+        answerInquiries();
+        parts_.stock.clear();
         takeEvents();
         takeCommands();
-        watchOwner();
+        serveBridge();
+        gate_.watchOwner();
         sendAll();
         dropGone();
     }
+    gate_.finish();
     takeAnswers();
     takeEvents();
     sendAll();
+    if (parts_.bridge != nullptr) parts_.bridge->close();
     for (auto& [number, client] : clients_) ::close(client.connection);
     clients_.clear();
 }
 
 void ControlServer::waitForClients() {
     std::vector<pollfd> waits{{socket_.descriptor(), POLLIN, 0}};
-    std::vector<std::uint64_t> numbers;
+    std::vector<CommandGate::Client> numbers;
     for (const auto& [number, client] : clients_) {
         const auto wanted = static_cast<short>(client.unsent.empty() ? POLLIN : POLLIN | POLLOUT);
         waits.push_back({client.connection, wanted, 0});
@@ -121,10 +115,10 @@ void ControlServer::acceptClients() {
     Client client;
     client.connection = connection;
     client.pid = peer.pid;
-    clients_.emplace(++lastClient_, std::move(client));
+    clients_.emplace(gate_.newClient(), std::move(client));
 }
 
-void ControlServer::receive(std::uint64_t number, Client& client) {
+void ControlServer::receive(CommandGate::Client number, Client& client) {
     std::array<char, 4096> buffer{};
     const ssize_t count = ::recv(client.connection, buffer.data(), buffer.size(), 0);
     if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) client.gone = true;
@@ -143,17 +137,26 @@ void ControlServer::receive(std::uint64_t number, Client& client) {
     }
 }
 
-void ControlServer::handle(std::uint64_t number, Client& client, std::string_view line) {
+void ControlServer::handle(CommandGate::Client number, Client& client, std::string_view line) {
     std::string error;
     const auto request = parseRequest(line, error);
     if (!request) return refuse(client, {}, std::move(error));
     if (!request->who.empty()) client.who = request->who.substr(0, 32);
+    const bool stops = request->verb == name(Order::MachineStop) ||
+                       request->verb == name(Order::Halt) || request->verb == name(Order::Leave);
+    if (!client.rate.take(std::chrono::steady_clock::now()) && !stops) {
+        return refuse(
+            client, *request,
+            fmt::format("too many requests; allowed: {:.0f} in a second", MostRequestsPerSecond));
+    }
     ControlReply reply{.id = request->id};
     if (request->verb == "status") {
         reply.status = report();
     } else if (request->verb == "events") {
         takeEvents();
         reply.events = eventsAfter(request->after);
+    } else if (request->verb == "network") {
+        return inquire(number, client, *request);
     } else {
         return order(number, client, *request);
     }
@@ -165,90 +168,64 @@ void ControlServer::refuse(Client& client, const ControlRequest& request, std::s
         encode(ControlReply{.id = request.id, .kind = ReplyKind::Refused, .error = std::move(why)});
 }
 
-void ControlServer::order(std::uint64_t number, Client& client, const ControlRequest& request) {
-    ControlCommand command;
-    if (std::string why = commandOf(request, command); !why.empty())
-        return refuse(client, request, why);
-    const bool isHeartbeat = command.order == Order::Heartbeat;
-    // A heartbeat of somebody who does not operate means nothing; anybody may stop the machine.
-    if (isHeartbeat && owner_ != number) return;
-    if (command.order != Order::MachineStop) {
-        if (std::string why = claim(number, client); !why.empty())
-            return refuse(client, request, why);
-    }
-    if (!isHeartbeat) {
-        if (tickets_.size() >= MostTickets)
-            return refuse(client, request, "too many commands at once");
-        command.ticket = ++lastTicket_;
-        tickets_[command.ticket] = {number, request.id, command.order, command.target};
-    }
-    if (parts_.control.rings().commands.push(command) || isHeartbeat) return;
-    tickets_.erase(command.ticket);
-    refuse(client, request, "busy: the machine has not yet taken the commands before");
+void ControlServer::order(CommandGate::Client number, Client& client,
+                          const ControlRequest& request) {
+    const std::string name =
+        fmt::format("{} (process {})", client.who.empty() ? "a client" : client.who, client.pid);
+    if (std::string why = gate_.submit(number, name, request); !why.empty())
+        refuse(client, request, std::move(why));
 }
 
-/// \return why there is no such command; empty when there is
-std::string ControlServer::commandOf(const ControlRequest& request, ControlCommand& command) const {
-    const auto order = orderOf(request.verb);
-    if (!order) return fmt::format("there is no request '{}'", request.verb);
-    const ControlNames& names = parts_.control.names();
-    command.order = *order;
-    command.distance = request.distance;
-    command.velocity = request.velocity;
-    const bool ofAxis = targetOf(*order) == OrderTarget::Axis;
-    if (targetOf(*order) == OrderTarget::None) return {};
-    const auto& known = ofAxis ? names.axes : names.programs;
-    const std::string& wanted = ofAxis ? request.axis : request.program;
-    command.target = indexOf(known, wanted);
-    if (command.target < known.size()) return {};
-    return fmt::format("there is no {} '{}'; allowed: {}", ofAxis ? "axis" : "program", wanted,
-                       fmt::join(known, ", "));
+void ControlServer::inquire(CommandGate::Client number, Client& client,
+                            const ControlRequest& request) {
+    const RunPhase phase = parts_.control.board().run.read().phase;
+    if (phase == RunPhase::BringUp || phase == RunPhase::Over)
+        return refuse(client, request, "no cycle runs: the network is brought up, or the run ends");
+    if (inquiries_.size() >= MostClients) return refuse(client, request, "too many at once");
+    inquiries_.push_back({number, request.id, parts_.control.diagnosis().ask()});
 }
 
-/// Makes the client the owner, or says who is.
-std::string ControlServer::claim(std::uint64_t number, const Client& client) {
-    const auto now = std::chrono::steady_clock::now();
-    if (owner_ != 0 && owner_ != number) {
-        if (now - ownerSeen_ <= OwnerTime)
-            return fmt::format("the machine is operated by {}", ownerName());
-        leave();
-    }
-    if (leavePending_) return "busy: the operator before has just left";
-    static_cast<void>(client);
-    owner_ = number;
-    ownerSeen_ = now;
-    return {};
+void ControlServer::answerInquiries() {
+    std::erase_if(inquiries_, [this](const Inquiry& inquiry) {
+        const auto client = clients_.find(inquiry.client);
+        if (client == clients_.end()) return true;
+        if (!parts_.control.diagnosis().shown(inquiry.number)) return false;
+        ControlReply reply{.id = inquiry.request};
+        reply.network = networkReport();
+        client->second.unsent += encode(reply);
+        return true;
+    });
 }
 
 void ControlServer::takeAnswers() {
-    ControlAnswer answer;
-    while (parts_.control.rings().answers.pop(answer)) {
-        const auto found = tickets_.find(answer.ticket);
-        if (found == tickets_.end()) continue;
-        const Ticket ticket = found->second;
-        if (answer.kind != AnswerKind::Accepted) tickets_.erase(found);
-        const auto client = clients_.find(ticket.client);
-        if (client == clients_.end()) continue;
-        ControlReply reply{
-            .id = ticket.request, .kind = kindOf(answer.kind), .error = {}, .cycle = answer.cycle};
-        if (answer.error != axis::ErrorId::None) {
-            const axis::ErrorInfo& info = axis::errorInfo(answer.error);
-            reply.error = fmt::format("{}: {} {}", info.name, info.text, info.remedy);
-        } else if (answer.refusal != Refusal::None) {
-            reply.error = explain(answer.refusal, ticket.order, ticket.target, answer.detail,
-                                  parts_.control.names());
+    while (const auto answer = gate_.nextAnswer()) {
+        if (parts_.bridge != nullptr && parts_.bridge->answer(answer->client, answer->reply)) {
+            continue;
         }
-        client->second.unsent += encode(reply);
+        const auto client = clients_.find(answer->client);
+        if (client != clients_.end()) client->second.unsent += encode(answer->reply);
     }
 }
 
 void ControlServer::takeEvents() {
     record::Event event;
     while (parts_.control.rings().events.next(event)) {
-        events_.push_back({++lastEvent_, event.cycle, secondsOf(event.cycle),
-                           text(event, parts_.control.names())});
-        if (events_.size() > KeptEvents) events_.pop_front();
+        keep(event.cycle, text(event, parts_.control.names()));
     }
+}
+
+/// One more event, for all doors.
+void ControlServer::keep(core::CycleNumber cycle, std::string text) {
+    events_.push_back({++lastEvent_, cycle, secondsOf(cycle), std::move(text)});
+    if (events_.size() > KeptEvents) events_.pop_front();
+    if (parts_.bridge != nullptr) parts_.bridge->tell(events_.back());
+}
+
+void ControlServer::serveBridge() {
+    if (parts_.bridge == nullptr) return;
+    const core::CycleNumber cycle = parts_.control.board().run.read().cycle;
+    std::string change = parts_.bridge->serve(gate_, cycle);
+    if (!change.empty()) keep(cycle, std::move(change));
 }
 
 void ControlServer::takeCommands() {
@@ -256,24 +233,6 @@ void ControlServer::takeCommands() {
     while (parts_.control.rings().taken.pop(taken)) {
         if (commandFile_) commandFile_->write(formatCommand(taken, parts_.control.names()));
     }
-}
-
-void ControlServer::watchOwner() {
-    if (owner_ != 0) {
-        const auto client = clients_.find(owner_);
-        const bool waits = std::any_of(tickets_.begin(), tickets_.end(), [this](const auto& entry) {
-            return entry.second.client == owner_;
-        });
-        const bool silent = std::chrono::steady_clock::now() - ownerSeen_ > OwnerTime;
-        if (client == clients_.end() || client->second.gone || (silent && !waits)) leave();
-    }
-    if (!leavePending_) return;
-    leavePending_ = !parts_.control.rings().commands.push({.order = Order::Leave});
-}
-
-void ControlServer::leave() {
-    owner_ = 0;
-    leavePending_ = !parts_.control.rings().commands.push({.order = Order::Leave});
 }
 
 void ControlServer::sendAll() {
@@ -293,7 +252,7 @@ void ControlServer::dropGone() {
             ++client;
             continue;
         }
-        if (client->first == owner_) leave();
+        gate_.leave(client->first);
         ::close(client->second.connection);
         client = clients_.erase(client);
     }

@@ -75,7 +75,9 @@ std::optional<LoadedMachine> loadMachine(const RunOptions& options,
     std::vector<std::string> problems;
     checkLoad(machine.config, problems);
     makeAxes(machine.config, machine.axes);
-    machine.programs = loadPrograms(machine.config, std::move(linked), problems);
+    LoadedPrograms programs = loadPrograms(machine.config, std::move(linked), problems);
+    machine.programs = std::move(programs.hosts);
+    machine.factories = std::move(programs.factories);
     for (ProgramHost& program : machine.programs) {
         for (const std::string& text : program.start(machine.axes, machine.config.network.cycle)) {
             problems.push_back(fmt::format("{}: error: {}", program.origin(), text));

@@ -17,7 +17,8 @@ struct LoadedMachine {
     config::MachineConfig config;
     Axes axes;
     std::vector<ProgramHost> programs;
-    std::vector<TakenCommand> commands;  ///< to be replayed
+    std::vector<ProgramFactory> factories;  ///< of the programs
+    std::vector<TakenCommand> commands;     ///< to be replayed
 };
 
 /// Reads the machine file and all it names, loads the programs and lets each one start. Everything

@@ -4,6 +4,8 @@
 #include <takt/fieldbus/pdo_layout.hpp>
 #include <utility>
 
+#include "bridge_samples.hpp"
+
 namespace takt::daemon {
 
 namespace {
@@ -52,6 +54,7 @@ ControlNames controlNames(const config::MachineConfig& machine,
     }
     for (const ProgramHost& program : programs) names.programs.push_back(program.name());
     for (const auto& input : machine.machineStop.inputs) names.stopInputs.push_back(input.name);
+    for (const auto& slave : machine.network.slaves) names.devices.push_back(slave.name);
     return names;
 }
 
@@ -59,9 +62,11 @@ MachineControl::MachineControl(const Parts& parts, std::vector<TakenCommand> rep
     : parts_{parts},
       names_{controlNames(parts.machine, parts.programs)},
       board_{parts.axes.size(), parts.programs.size()},
+      diagnosis_{parts.machine.network.slaves.size()},
       stop_{parts.machine.machineStop, parts.machine.network.cycle,
-            bindInputs(parts.machine, parts.master)},
-      desk_{{parts.axes, parts.programs, stop_, rings_},
+            bindInputs(parts.machine, parts.master), parts.axes.size()},
+      bus_{{parts.machine.network, parts.machine.axes, parts.master, parts.axes, parts.programs}},
+      desk_{{parts.axes, parts.programs, stop_, bus_, parts.stock, rings_},
             parts.machine.network.cycle,
             std::move(replay),
             record} {
@@ -79,7 +84,7 @@ void MachineControl::beforePrograms(core::CycleNumber cycle, const CycleOrders& 
 void MachineControl::afterPrograms(core::CycleNumber cycle, const CycleOrders& orders) noexcept {
     takeWishes(cycle);
     if (stop_.onFault()) watchFaults(cycle);
-    desk_.cycle(cycle, orders.operating);
+    desk_.cycle(cycle, orders.operating, orders.allTold);
     stop_.act(cycle, parts_.axes);
     if (!orders.stopAxes) return;
     for (axis::Axis& axis : parts_.axes) axis.machineStop();
@@ -118,8 +123,10 @@ void MachineControl::publish(core::CycleNumber cycle, const CycleOrders& orders)
 }
 
 void MachineControl::publishStatus(core::CycleNumber cycle, const CycleOrders& orders) noexcept {
-    board_.run.write(
-        {cycle, orders.phase, parts_.master.state(), stop_.record(), parts_.master.counters()});
+    const RunEntry run{cycle, orders.phase, parts_.master.state(), stop_.record(),
+                       parts_.master.counters()};
+    board_.run.write(run);
+    publishToBridge(run);
     for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
         const axis::Axis& axis = parts_.axes[i];
         board_.axes[i].write({axis.status(), axis.error(),
@@ -128,13 +135,22 @@ void MachineControl::publishStatus(core::CycleNumber cycle, const CycleOrders& o
     }
     for (std::size_t i = 0; i < parts_.programs.size(); ++i) {
         const ProgramHost& program = parts_.programs[i];
-        ProgramEntry entry{program.phase(), program.held(), program.endCycle(), {}};
+        ProgramEntry entry{
+            program.phase(), program.held(), program.instance(), program.endCycle(), {}};
         const auto& watched = program.watched();
         const std::size_t count =
             program.atRest() ? std::min(watched.size(), entry.watches.size()) : 0;
         for (std::size_t w = 0; w < count; ++w) entry.watches[w] = watched[w].number();
         board_.programs[i].write(entry);
     }
+}
+
+void MachineControl::publishToBridge(const RunEntry& run) noexcept {
+    if (parts_.bridge == nullptr || !parts_.bridge->due(run.cycle)) return;
+    for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
+        parts_.bridge->axis(i, sampleOf(run.cycle, parts_.axes[i].status()));
+    }
+    parts_.bridge->machine(sampleOf(run));
 }
 
 void MachineControl::noteChanges(core::CycleNumber cycle) noexcept {

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <span>
+#include <takt/bridge/status_memory.hpp>
 #include <takt/config/machine_config.hpp>
 #include <takt/fieldbus/ethercat/master.hpp>
 #include <vector>
 
 #include "axes.hpp"
+#include "bus_desk.hpp"
 #include "command_desk.hpp"
 #include "control_command.hpp"
+#include "diagnosis_board.hpp"
 #include "event_text.hpp"
 #include "machine_stop.hpp"
 #include "program_host.hpp"
@@ -19,6 +22,7 @@ namespace takt::daemon {
 struct CycleOrders {
     bool runPrograms{false};
     bool operating{false};  ///< commands and stop inputs count
+    bool allTold{true};     ///< what was noted of programs has been put into words
     bool stopAxes{false};   ///< the run ends: every axis ramps down and is switched off
     RunPhase phase{RunPhase::GoingOp};
 };
@@ -31,6 +35,8 @@ public:
         fieldbus::ethercat::Master& master;
         Axes& axes;
         std::span<ProgramHost> programs;
+        ProgramStock& stock;
+        bridge::StatusWriter* bridge;  ///< null: none
     };
     /// \param replay commands of a file, in the order of their cycles
     /// \param record what is taken goes into the ring for the command file
@@ -43,6 +49,7 @@ public:
 
     [[nodiscard]] ControlRings& rings() noexcept { return rings_; }
     [[nodiscard]] const StatusBoard& board() const noexcept { return board_; }
+    [[nodiscard]] DiagnosisBoard& diagnosis() noexcept { return diagnosis_; }
     [[nodiscard]] const ControlNames& names() const noexcept { return names_; }
     [[nodiscard]] const MachineStop& machineStop() const noexcept { return stop_; }
 
@@ -62,13 +69,16 @@ private:
     void takeWishes(core::CycleNumber cycle) noexcept;
     void watchFaults(core::CycleNumber cycle) noexcept;
     void publishStatus(core::CycleNumber cycle, const CycleOrders& orders) noexcept;
+    void publishToBridge(const RunEntry& run) noexcept;
     void noteChanges(core::CycleNumber cycle) noexcept;
 
     Parts parts_;
     ControlNames names_;
     ControlRings rings_;
     StatusBoard board_;
+    DiagnosisBoard diagnosis_;
     MachineStop stop_;
+    BusDesk bus_;
     CommandDesk desk_;
     Seen seen_;
 };

@@ -10,6 +10,7 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
     parts_.master.exchange(beat.number);
     const core::HostTime replied = parts_.clock.now();
     followReferenceClock(beat);
+    if (beat.skipped > 0) passOver(beat);
     for (axis::Axis& axis : parts_.axes) axis.readInputs(beat.number);
     parts_.control.beforePrograms(beat.number, orders);
     if (orders.runPrograms) {
@@ -23,6 +24,15 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
     parts_.recorders.row(beat.number, parts_.axes);
     parts_.control.publish(beat.number, orders);
     keepBooks(beat, replied, computed);
+}
+
+/// Lost set-points are those of the cycles that were missed, so they come before this one's inputs.
+void MachineCycle::passOver(const scheduler::Beat& beat) noexcept {
+    for (std::uint32_t i = beat.madeUpFor; i > 0; --i) {
+        for (axis::Axis& axis : parts_.axes) axis.missCycle();
+        parts_.recorders.row(beat.number - i, parts_.axes);
+    }
+    for (axis::Axis& axis : parts_.axes) axis.standFor(beat.skipped - beat.madeUpFor);
 }
 
 void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {
@@ -40,7 +50,7 @@ void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {
     parts_.grid.shift(parts_.dcLock.update(error));
     parts_.master.setClockLocked(parts_.dcLock.locked());
     if (parts_.dcLock.locked()) {
-        worstPhaseError_ = std::max(worstPhaseError_, std::chrono::abs(error));
+        statistics_.phaseError.add(std::chrono::abs(error).count());
     }
 }
 

@@ -8,17 +8,20 @@
 #include <vector>
 
 #include "assembly.hpp"
+#include "bridge_door.hpp"
 #include "bus.hpp"
 #include "console.hpp"
 #include "control_server.hpp"
 #include "loading.hpp"
 #include "machine_control.hpp"
 #include "machine_cycle.hpp"
+#include "network_summary.hpp"
 #include "pace.hpp"
 #include "program_watchdog.hpp"
 #include "realtime_thread.hpp"
 #include "run_notice.hpp"
 #include "run_reporter.hpp"
+#include "service_notifier.hpp"
 #include "stop_request.hpp"
 
 namespace takt::daemon {
@@ -53,12 +56,13 @@ private:
     void runOnThreads();
     void keepHouse(bool cycleRests);
     void conclude();
-    void tellStatistics();
+    [[nodiscard]] NetworkReport networkReport();
     [[noreturn]] void leaveHangingProgram(std::size_t program, core::CycleNumber cycle);
 
     // rt, after each cycle.
     void oneCycle() noexcept;
     void supervise() noexcept;
+    [[nodiscard]] DiagnosisEntry diagnosis() const noexcept;
     void superviseOverruns(const scheduler::Beat& beat) noexcept;
     void superviseGoingOp() noexcept;
     void superviseOperating() noexcept;
@@ -66,6 +70,7 @@ private:
     void superviseLeavingOp() noexcept;
     void enter(Phase phase) noexcept;
     void fail(ExitCode code, RunNotice::Kind kind, std::size_t index = 0) noexcept;
+    void send(const RunNotice& notice) noexcept;
     void note(RunNotice::Kind kind, std::size_t index = 0, std::uint64_t number = 0) noexcept;
     void noteEndedPrograms() noexcept;
     void noteMachineStop() noexcept;
@@ -81,19 +86,25 @@ private:
     StopRequest stop_;
     Axes& axes_;
     std::vector<ProgramHost>& programs_;
-    std::vector<bool> noted_;  ///< programs whose end has been noted
+    std::vector<bool> endNoted_;      ///< programs whose end has been noted
+    std::vector<bool> overdueNoted_;  ///< axes that outlasted the present machine stop
     Bus bus_;
     scheduler::DcLock dcLock_;
     scheduler::Grid grid_;
     scheduler::OverrunGuard overruns_;
+    ProgramStock stock_;
+    std::unique_ptr<BridgeDoor> bridge_;  ///< null: the machine file asks for none
     MachineControl control_;
     ControlServer server_;
     MachineCycle cycle_;
     Pace pace_;
     CycleOrders orders_;
     RunNotices notices_;
-    std::vector<RunNotice> heldBack_;  ///< until what they speak of rests
+    std::uint64_t noted_{0};              ///< notices sent
+    std::atomic<std::uint64_t> told_{0};  ///< … and put into words, or held back
+    std::vector<RunNotice> heldBack_;     ///< until what they speak of rests
     RunReporter reporter_;
+    ServiceNotifier service_;
     Phase phase_{Phase::BringUp};
     core::CycleNumber phaseBegan_{0};
     core::CycleNumber now_{0};

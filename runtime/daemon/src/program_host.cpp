@@ -64,8 +64,9 @@ std::vector<std::string> ProgramHost::start(const Axes& axes, core::Duration cyc
 
 void ProgramHost::cycle(core::CycleNumber cycle, Axes& axes) noexcept {
     if (ended()) return;
+    const bool turn = due(cycle);
     if (!caller_->underWay()) {
-        if (held_ || cycle % params_.everyCycles != 0) return;
+        if (held_ || !turn) return;
         open(axes);
         phase_ = ProgramPhase::Running;
     }
@@ -81,6 +82,13 @@ void ProgramHost::cycle(core::CycleNumber cycle, Axes& axes) noexcept {
     const ProgramPhase phase = phaseAfter(work_->answer());
     if (phase != ProgramPhase::Running) end(phase, cycle);
     settle(axes);
+}
+
+/// Every n-th cycle; when that one was missed, the next that runs.
+bool ProgramHost::due(core::CycleNumber cycle) noexcept {
+    const core::CycleNumber every = params_.everyCycles;
+    const core::CycleNumber last = std::exchange(lastCycle_, cycle);
+    return cycle % every == 0 || (last != 0 && last / every != cycle / every);
 }
 
 void ProgramHost::open(Axes& axes) noexcept {
@@ -109,6 +117,17 @@ void ProgramHost::hold(Axes& axes) noexcept {
     if (ended() || held_) return;
     held_ = true;
     stopAxes(axes);
+}
+
+void ProgramHost::exchange(ProgramHost& fresh, Axes& axes) noexcept {
+    stopAxes(axes);
+    std::swap(work_, fresh.work_);
+    std::swap(inspector_, fresh.inspector_);
+    std::swap(commanded_, fresh.commanded_);
+    std::swap(instance_, fresh.instance_);
+    phase_ = ProgramPhase::Waiting;
+    held_ = true;
+    endCycle_ = 0;
 }
 
 void ProgramHost::end(ProgramPhase phase, core::CycleNumber cycle) noexcept {
