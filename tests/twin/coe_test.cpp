@@ -85,7 +85,7 @@ TEST_F(TwinCoe, RefusesWhatDoesNotExistOrMayNotBeWritten) {
     EXPECT_EQ(master.upload(0, 0x6099, 9).abort, NoSubindex);
     EXPECT_EQ(master.download(0, 0x6041, 0, le16(0)), ReadOnly);
     EXPECT_EQ(master.download(0, 0x6065, 0, le16(0)), LengthMismatch);
-    EXPECT_EQ(master.download(0, 0x6060, 0, {3}), OutOfRange);
+    EXPECT_EQ(master.download(0, 0x6060, 0, {7}), OutOfRange);
 }
 
 TEST_F(TwinCoe, RefusesCompleteAccess) {

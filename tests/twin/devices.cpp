@@ -21,6 +21,24 @@ void addObject(wire::DeviceDescription& device, std::uint16_t index, DataType ty
     device.objects.push_back({index, "", {entry}});
 }
 
+/// 6099h:04, :05 and :07 of the CD300E.
+void addVendorHoming(wire::ObjectDescription& speeds) {
+    const auto add = [&](std::uint8_t subindex, DataType type, std::uint16_t bits,
+                         std::uint8_t value) {
+        wire::ObjectEntryDescription entry;
+        entry.subindex = subindex;
+        entry.type = type;
+        entry.bits = bits;
+        entry.writable = true;
+        entry.defaultValue.assign(bits / 8U, 0);
+        entry.defaultValue[0] = value;
+        speeds.entries.push_back(entry);
+    };
+    add(4, DataType::Unsigned16, 16, 20);
+    add(5, DataType::Unsigned8, 8, 0);
+    add(7, DataType::Unsigned16, 16, 200);
+}
+
 void addObjects(wire::DeviceDescription& device, const std::string& type) {
     const bool ra = type == "ra";
     wire::ObjectEntryDescription name;
@@ -57,6 +75,7 @@ void addObjects(wire::DeviceDescription& device, const std::string& type) {
         entry.writable = sub != 0;
         speeds.entries.push_back(entry);
     }
+    if (type == "cd300e") addVendorHoming(speeds);
     device.objects.push_back(speeds);
     addObject(device, 0x609A, DataType::Unsigned32, 32, true, PdoMappable::No, 1000000);
     addObject(device, 0x60F4, DataType::Integer32, 32, false, PdoMappable::Transmit);

@@ -106,7 +106,7 @@ TEST(TwinDriveStates, TakesTimeToEnable) {
 TEST(TwinDriveStates, ShowsRemoteInOpAndItsModeOfOperation) {
     Rig rig{"cd300e"};
     rig.toOp();
-    rig.mode = 3;
+    rig.mode = 7;
     rig.give(0x0006);
     EXPECT_EQ(rig.master->mode(0), 0);  // not simulated: not taken
     rig.mode = 8;

@@ -1,8 +1,15 @@
+#include "homing.hpp"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <tuple>
 
 #include "devices.hpp"
+#include "homing_cases.hpp"
 #include "homing_sequence.hpp"
 #include "test_master.hpp"
 
@@ -24,24 +31,60 @@ struct Outcome {
     int cycles{0};
 };
 
-struct Run {
+struct Scene {
     std::string profile;
     std::int8_t method{0};
     double start{0.0};
     std::int32_t offset{0};
     SwitchParams home{SwitchFrom, SwitchTo};
+    bool limits{true};
+    bool hardStops{false};
+};
+
+/// Motion between two reversals, each fast or slow: "F+ S-".
+class Legs {
+public:
+    void watch(double velocity) {
+        constexpr double Still = 0.02;
+        if (std::abs(velocity) < Still) return;
+        const int sign = velocity > 0.0 ? 1 : -1;
+        if (legs_.empty() || legs_.back().sign != sign) legs_.push_back({sign, false});
+        if (std::abs(velocity) > 1.0) legs_.back().fast = true;
+    }
+    [[nodiscard]] std::string text() const {
+        std::string result;
+        for (const Leg& leg : legs_) {
+            if (!result.empty()) result += ' ';
+            result += leg.fast ? 'F' : 'S';
+            result += leg.sign > 0 ? '+' : '-';
+        }
+        return result;
+    }
+
+private:
+    struct Leg {
+        int sign;
+        bool fast;
+    };
+    std::vector<Leg> legs_;
 };
 
 class HomingRig {
 public:
-    explicit HomingRig(const Run& run) : ra_{run.profile == "ra"} {
+    explicit HomingRig(const Scene& run) : ra_{run.profile == "ra"} {
         params_ = lineOf(1, run.profile);
         MechanicsParams& mechanics = params_.devices[0].mechanics;
         mechanics.startTurns = run.start;
         mechanics.indexTurns = Index;
         mechanics.homeSwitch = run.home;
-        mechanics.negativeLimit = SwitchParams{-100.0, NegativeEnd};
-        mechanics.positiveLimit = SwitchParams{PositiveEnd, 100.0};
+        if (run.limits) {
+            mechanics.negativeLimit = SwitchParams{-100.0, NegativeEnd};
+            mechanics.positiveLimit = SwitchParams{PositiveEnd, 100.0};
+        }
+        if (run.hardStops) {
+            mechanics.hardStopNegative = NegativeEnd;
+            mechanics.hardStopPositive = PositiveEnd;
+        }
         twin_ = std::make_unique<Twin>(params_, descriptionsFor(params_), milliseconds{1});
         master_ = std::make_unique<TestMaster>(*twin_);
         TestMaster& master = *master_;
@@ -64,6 +107,7 @@ public:
         while (outcome.cycles < limit && (master.statusWord(0) & 0x2400) == 0) {
             master.cycle();
             ++outcome.cycles;
+            if ((master.statusWord(0) & 0x1000) == 0) legs_.watch(twin_->probe(0).motorVelocity);
         }
         master.cycles(30);
         return finish(outcome);
@@ -75,6 +119,8 @@ public:
         return outcome;
     }
     [[nodiscard]] bool enabled() const { return enabled_; }
+    /// The legs of the search, until home was found.
+    [[nodiscard]] std::string legs() const { return legs_.text(); }
     TestMaster& master() { return *master_; }
     Twin& twin() { return *twin_; }
 
@@ -84,6 +130,7 @@ private:
     std::unique_ptr<Twin> twin_;
     std::unique_ptr<TestMaster> master_;
     bool enabled_{false};
+    Legs legs_;
 };
 
 constexpr std::uint16_t ModeBits = 0x3400;
@@ -97,75 +144,282 @@ double indexBeyond(double from, int direction) {
     return direction > 0 ? std::ceil(from - Index) + Index : std::floor(from - Index) + Index;
 }
 
+double placeOf(Start start) {
+    switch (start) {
+        case Start::NegativeLimit:
+            return NegativeEnd - 0.45;
+        case Start::Below:
+            return 0.05;
+        case Start::OnSwitch:
+            return 2.5;
+        case Start::Above:
+            return 5.05;
+        case Start::PositiveLimit:
+            return PositiveEnd + 0.45;
+    }
+    return 0.0;
+}
+
+constexpr Start AllStarts[] = {Start::NegativeLimit, Start::Below, Start::OnSwitch, Start::Above,
+                               Start::PositiveLimit};
+
+/// Reference edge, direction of the last motion, index: the manuals' tables of results.
 struct Expectation {
-    std::int8_t method;
-    double edge;    ///< where the last event happens
-    int direction;  ///< of the last motion
+    double edge;
+    int direction;
     bool index;
 };
 
-std::vector<Expectation> expectations(double start) {
-    return {
-        {1, indexBeyond(NegativeEnd, 1), 1, true},
-        {2, indexBeyond(PositiveEnd, -1), -1, true},
-        {3, indexBeyond(SwitchFrom, -1), -1, true},
-        {4, indexBeyond(SwitchFrom, 1), 1, true},
-        {5, indexBeyond(SwitchTo, 1), 1, true},
-        {6, indexBeyond(SwitchTo, -1), -1, true},
-        {17, NegativeEnd, 1, false},
-        {18, PositiveEnd, -1, false},
-        {19, SwitchFrom, -1, false},
-        {20, SwitchFrom, 1, false},
-        {21, SwitchTo, 1, false},
-        {22, SwitchTo, -1, false},
-        {33, indexBeyond(start, -1), -1, true},
-        {34, indexBeyond(start, 1), 1, true},
+std::optional<Expectation> resultOf(int method, Start start) {
+    struct Row {
+        double edge;
+        int direction;
+        std::vector<int> index;
+        std::vector<int> edgeOnly;
     };
+    const std::vector<Row> rows{
+        {NegativeEnd, 1, {1}, {17}},
+        {PositiveEnd, -1, {2}, {18}},
+        {SwitchFrom, -1, {3, 7, 14}, {19, 23, 30}},
+        {SwitchFrom, 1, {4, 8, 13}, {20, 24, 29}},
+        {SwitchTo, 1, {5, 10, 11}, {21, 26, 27}},
+        {SwitchTo, -1, {6, 9, 12}, {22, 25, 28}},
+        {placeOf(start), -1, {33}, {}},
+        {placeOf(start), 1, {34}, {}},
+    };
+    const auto has = [&](const std::vector<int>& list) {
+        return std::find(list.begin(), list.end(), method) != list.end();
+    };
+    for (const Row& row : rows) {
+        if (has(row.index))
+            return Expectation{indexBeyond(row.edge, row.direction), row.direction, true};
+        if (has(row.edgeOnly)) return Expectation{row.edge, row.direction, false};
+    }
+    return std::nullopt;
 }
 
-/// Whether a method reaches its switch from where the axis stands (CiA 402 methods do not turn
-/// round).
-bool reaches(std::int8_t method, double start) {
-    if (start < SwitchFrom) return method != 5 && method != 6 && method != 21 && method != 22;
-    if (start > SwitchTo) return method != 3 && method != 4 && method != 19 && method != 20;
+bool anyOf(int method, std::initializer_list<int> list) {
+    return std::find(list.begin(), list.end(), method) != list.end();
+}
+
+/// Whether the manual describes the run. It does not: meeting a limit switch in 3 to 6, 19 to 22,
+/// 33 and 34; starting on the limit switch that 7 to 14 and 23 to 30 travel to.
+bool described(int method, Start start) {
+    const bool above = start == Start::Above || start == Start::PositiveLimit;
+    const bool below = start == Start::Below || start == Start::NegativeLimit;
+    if (anyOf(method, {3, 4, 19, 20})) return !above;
+    if (anyOf(method, {5, 6, 21, 22})) return !below;
+    if ((method >= 7 && method <= 10) || (method >= 23 && method <= 26))
+        return start != Start::PositiveLimit;
+    if ((method >= 11 && method <= 14) || (method >= 27 && method <= 30))
+        return start != Start::NegativeLimit;
+    if (method == 33) return start != Start::NegativeLimit;
+    if (method == 34) return start != Start::PositiveLimit;
     return true;
 }
 
+std::string label(int method, Start start) {
+    return "method " + std::to_string(method) + " from " + std::to_string(placeOf(start));
+}
+
 TEST(TwinHoming, Cd300eTakesTheStandstillAsHomeAndTheNearestIndexWithIndexMethods) {
-    for (const double start : {0.05, 2.5, 5.05}) {
-        for (const Expectation& expected : expectations(start)) {
-            if (!reaches(expected.method, start)) continue;
-            HomingRig rig{{"cd300e", expected.method, start}};
+    for (int method = 1; method <= 34; ++method) {
+        for (const Start start : AllStarts) {
+            const auto expected = resultOf(method, start);
+            if (!expected || !described(method, start)) continue;
+            SCOPED_TRACE(label(method, start));
+            HomingRig rig{{"cd300e", static_cast<std::int8_t>(method), placeOf(start)}};
             ASSERT_TRUE(rig.enabled());
             const Outcome outcome = rig.home();
-            EXPECT_EQ(outcome.statusWord & ModeBits, Finished)
-                << int{expected.method} << " from " << start;
+            EXPECT_EQ(outcome.statusWord & ModeBits, Finished);
             EXPECT_EQ(outcome.statusWord & 0x8000, 0x8000);
-            EXPECT_NEAR(outcome.position, 0, 1) << int{expected.method};
+            EXPECT_NEAR(outcome.position, 0, 1);
             // Switch methods come to rest one stopping way beyond the edge; a control step of play.
-            const double home =
-                expected.index ? expected.edge : expected.edge + expected.direction * StoppingWay;
-            EXPECT_NEAR(outcome.turns, home, expected.index ? 2e-4 : 1.5e-3)
-                << int{expected.method} << " from " << start;
+            const double beyond = expected->index ? 0.0 : expected->direction * StoppingWay;
+            EXPECT_NEAR(outcome.turns, expected->edge + beyond, expected->index ? 2e-4 : 1.5e-3);
         }
     }
 }
 
 TEST(TwinHoming, RaLatchesTheEdgeAndDoesNotMoveBack) {
-    for (const double start : {0.05, 2.5, 5.05}) {
-        for (const Expectation& expected : expectations(start)) {
-            if (!reaches(expected.method, start)) continue;
-            HomingRig rig{{"ra", expected.method, start}};
+    for (int method = 1; method <= 34; ++method) {
+        if (!anyOf(method, {1, 2, 3, 4, 5, 6, 17, 18, 19, 20, 21, 22, 33, 34})) continue;
+        for (const Start start : AllStarts) {
+            if (!described(method, start)) continue;
+            SCOPED_TRACE(label(method, start));
+            const auto expected = resultOf(method, start);
+            ASSERT_TRUE(expected);
+            HomingRig rig{{"ra", static_cast<std::int8_t>(method), placeOf(start)}};
             ASSERT_TRUE(rig.enabled());
             const Outcome outcome = rig.home();
-            EXPECT_EQ(outcome.statusWord & ModeBits, Finished)
-                << int{expected.method} << " from " << start;
+            EXPECT_EQ(outcome.statusWord & ModeBits, Finished);
             // The zero lies exactly on the edge wherever the motor stands afterwards.
-            EXPECT_NEAR(outcome.turns - outcome.position / CountsPerTurn, expected.edge, 2e-4)
-                << int{expected.method} << " from " << start;
-            EXPECT_NEAR(outcome.turns, expected.edge, 0.01) << int{expected.method};
+            EXPECT_NEAR(outcome.turns - outcome.position / CountsPerTurn, expected->edge, 2e-4);
+            EXPECT_NEAR(outcome.turns, expected->edge, 0.01);
         }
     }
+}
+
+TEST(TwinHoming, EndsWithAnErrorWhereTheManualDescribesNoRun) {
+    for (const char* profile : {"cd300e", "ra"}) {
+        for (int method = 1; method <= 34; ++method) {
+            if (!driveTraits(profile).supportsHoming(static_cast<std::int8_t>(method))) continue;
+            for (const Start start : AllStarts) {
+                if (described(method, start)) continue;
+                SCOPED_TRACE(profile + (" " + label(method, start)));
+                HomingRig rig{{profile, static_cast<std::int8_t>(method), placeOf(start)}};
+                ASSERT_TRUE(rig.enabled());
+                rig.home();
+                rig.master().cycles(200);  // from 4 turns/s it takes 100 ms to stand
+                const Outcome outcome = rig.finish({});
+                EXPECT_EQ(outcome.statusWord & ModeBits, 0x2400);
+                EXPECT_EQ(outcome.statusWord & 0x8000, 0);
+            }
+        }
+    }
+}
+
+/// "S- S+" of the steps "S- S+ S+": one leg for steps in one direction, fast if one of them is.
+std::string legsOf(const std::string& steps) {
+    std::string legs;
+    for (std::size_t at = 0; at < steps.size(); at += 3) {
+        const bool same = !legs.empty() && legs.back() == steps[at + 1];
+        if (!same) {
+            if (!legs.empty()) legs += ' ';
+            legs += steps.substr(at, 2);
+        }
+    }
+    return legs;
+}
+
+TEST(TwinHoming, Cd300eTravelsTheLegsOfEveryStartCaseOfItsManual) {
+    for (const HomingCase& entry : HomingCases) {
+        SCOPED_TRACE(label(entry.method, entry.start) + ": " + entry.steps);
+        HomingRig rig{{"cd300e", entry.method, placeOf(entry.start)}};
+        ASSERT_TRUE(rig.enabled());
+        rig.home();
+        std::string observed = rig.legs();
+        const std::string expected = legsOf(entry.steps);
+        // The way to rest over the last edge, and back to the index, is not part of the search.
+        EXPECT_EQ(observed.substr(0, expected.size()), expected) << observed;
+    }
+}
+
+TEST(TwinHoming, Cd300eBacksOffFromAHardStopByTheHomeOffset) {
+    for (const int method : {-17, -18}) {
+        for (const std::int32_t offset : {2500, -2500}) {  // its size counts, not its sign
+            SCOPED_TRACE(std::to_string(method) + " with " + std::to_string(offset));
+            Scene run{"cd300e", static_cast<std::int8_t>(method), 0.05, offset};
+            run.limits = false;
+            run.hardStops = true;
+            HomingRig rig{run};
+            ASSERT_TRUE(rig.enabled());
+            const Outcome outcome = rig.home(20'000);
+            EXPECT_EQ(outcome.statusWord & ModeBits, Finished);
+            const double home = method == -17 ? NegativeEnd + 0.25 : PositiveEnd - 0.25;
+            EXPECT_NEAR(outcome.turns, home, 5e-4);
+            EXPECT_NEAR(outcome.position, 0, 3);
+        }
+    }
+}
+
+TEST(TwinHoming, AHardStopIsNotFoundBelowItsCurrentThreshold) {
+    Scene run{"cd300e", -17, NegativeEnd + 0.1, 2500};
+    run.limits = false;
+    run.hardStops = true;
+    HomingRig rig{run};
+    // 100 A are beyond what the drive can give: the following error ends the run instead.
+    ASSERT_EQ(rig.master().download(0, 0x6099, 4, le16(1000)), 0U);
+    ASSERT_EQ(rig.master().download(0, 0x6065, 0, le32(5000)), 0U);
+    ASSERT_TRUE(rig.enabled());
+    rig.home(3000);
+    EXPECT_EQ(rig.master().errorCode(0), 0x8611);
+}
+
+/// A homing run of the parts alone, so that readings of the manuals can be switched.
+struct BareRun {
+    HomingSettings settings;
+    double home{0.0};
+    Homing::State state{Homing::State::Idle};
+
+    explicit BareRun(std::int8_t method, const HomingTraits& traits) {
+        settings = {method, 4.0, 0.5, 40.0, 0.0, 3.0, traits.movesToOffset, 1.0, traits};
+    }
+    void from(double start, double index = Index) {
+        MechanicsParams mechanics;
+        mechanics.startTurns = start;
+        mechanics.indexTurns = index;
+        mechanics.homeSwitch = SwitchParams{SwitchFrom, SwitchTo};
+        mechanics.negativeLimit = SwitchParams{-100.0, NegativeEnd};
+        mechanics.positiveLimit = SwitchParams{PositiveEnd, 100.0};
+        constexpr double Step = 250e-6;
+        Motor motor{mechanics};
+        Servo servo{motor, Step, 3.8};
+        servo.reset(motor);
+        MotionGenerator generator;
+        generator.begin({start, 0.0, 0.0});
+        Homing homing;
+        homing.start(settings, motor, generator);
+        Demand demand = generator.demand();
+        for (int i = 0; i < 60'000 && homing.state() != Homing::State::Done; ++i) {
+            const double torque = servo.torque(demand, motor, {10.0, 10.0, 0.0});
+            motor.step(torque, false, Step);
+            homing.step(motor, torque, generator);
+            demand = generator.step(Step);
+        }
+        state = homing.state();
+        home = homing.home();
+    }
+};
+
+TEST(TwinHomingReadings, AnIndexMetWhileSlowingDownCountsUnlessTheDriveWaitsForSlowSpeed) {
+    HomingTraits traits = driveTraits("cd300e").homing;
+    const double index = 2.1;  // 0.197 turns after the edge at 2.0 the slow speed is reached
+    BareRun run{4, traits};
+    run.from(0.05, index);
+    EXPECT_NEAR(run.home, 2.1, 1e-6);
+    traits.indexAtSlowSpeedOnly = true;
+    BareRun waiting{4, traits};
+    waiting.from(0.05, index);
+    EXPECT_NEAR(waiting.home, 3.1, 1e-6);
+}
+
+TEST(TwinHomingReadings, TheFirstEdgeIsHomeForADriveThatDoesNotBackOff) {
+    HomingTraits traits = driveTraits("ra").homing;
+    traits.backsOff = false;
+    for (const auto& [method, start, edge] :
+         {std::tuple{20, 0.05, SwitchFrom}, std::tuple{22, 5.05, SwitchTo}}) {
+        BareRun run{static_cast<std::int8_t>(method), traits};
+        run.from(start);
+        EXPECT_EQ(run.state, Homing::State::Done);
+        EXPECT_NEAR(run.home, edge, 1e-6);
+    }
+}
+
+TEST(TwinHomingReadings, ThePrintedStartDirectionsOfRaReachTheSwitchFromTheOtherSide) {
+    HomingTraits traits = driveTraits("ra").homing;
+    traits.startsAsPrinted = true;
+    for (const auto& [method, start, edge] :
+         {std::tuple{4, 5.05, indexBeyond(SwitchFrom, 1)}, std::tuple{20, 5.05, SwitchFrom},
+          std::tuple{6, 0.05, indexBeyond(SwitchTo, -1)}, std::tuple{22, 0.05, SwitchTo}}) {
+        SCOPED_TRACE(method);
+        BareRun run{static_cast<std::int8_t>(method), traits};
+        run.from(start);
+        EXPECT_EQ(run.state, Homing::State::Done);
+        EXPECT_NEAR(run.home, edge, 1e-6);
+    }
+}
+
+TEST(TwinHomingReadings, TheRestPointIsHomeInOffsetModeOneWhenTheDriveReadsItSo) {
+    HomingTraits traits = driveTraits("cd300e").homing;
+    traits.movesToOffset = false;
+    BareRun latched{34, traits};
+    latched.from(0.05);
+    EXPECT_NEAR(latched.home, Index, 1e-6);
+    traits.offsetAtRestPoint = true;
+    BareRun resting{34, traits};
+    resting.from(0.05);
+    EXPECT_NEAR(resting.home, Index + StoppingWay, 1e-3);
 }
 
 TEST(TwinHoming, Method35TakesThePresentPositionWithoutMotion) {
@@ -207,15 +461,6 @@ TEST(TwinHoming, StopsWithoutResultWhenTheStartBitFalls) {
     EXPECT_EQ(rig.home().statusWord & ModeBits, Finished);
 }
 
-TEST(TwinHoming, FailsAtALimitSwitchThatTheMethodDoesNotUse) {
-    HomingRig rig{{"ra", 19, 5.05}};  // beyond the switch: runs into the positive limit
-    rig.home();
-    rig.master().cycles(200);  // from 4 turns/s it takes 100 ms to stand
-    const Outcome outcome = rig.finish({});
-    EXPECT_EQ(outcome.statusWord & ModeBits, 0x2400);
-    EXPECT_NEAR(outcome.turns, PositiveEnd, 0.5);
-}
-
 TEST(TwinHoming, FailsWithoutAMethod) {
     HomingRig rig{{"cd300e", 0, 0.0}};
     EXPECT_EQ(rig.home(50).statusWord & ModeBits, 0x2400);
@@ -236,11 +481,18 @@ TEST(TwinHoming, FollowsTargetsInTheNewCoordinatesAfterwards) {
     EXPECT_EQ(master.statusWord(0) & 0x8000, 0x8000);
 }
 
-TEST(TwinHoming, KnowsTheMethodsOfBothTables) {
+TEST(TwinHoming, KnowsTheMethodsOfEachDriveAndNoOthers) {
     for (int method = -128; method < 128; ++method) {
-        const bool known = (method >= 1 && method <= 6) || (method >= 17 && method <= 22) ||
-                           (method >= 33 && method <= 35);
-        EXPECT_EQ(homingSupported(HomingTable::Cia402, static_cast<std::int8_t>(method)), known)
+        const auto value = static_cast<std::int8_t>(method);
+        const bool common = (method >= 1 && method <= 6) || (method >= 17 && method <= 22) ||
+                            (method >= 33 && method <= 35);
+        const bool reversing = (method >= 7 && method <= 14) || (method >= 23 && method <= 30);
+        EXPECT_EQ(homingSupported(HomingMethods::WithoutReversal, value), common) << method;
+        EXPECT_EQ(homingSupported(HomingMethods::Cia402, value),
+                  common || reversing || method == 37)
+            << method;
+        EXPECT_EQ(homingSupported(HomingMethods::WithHardStops, value),
+                  common || reversing || method == -17 || method == -18)
             << method;
     }
 }

@@ -5,6 +5,8 @@
 #include <takt/wire/byte_io.hpp>
 #include <takt/wire/mailbox.hpp>
 
+#include "drive_parameters.hpp"
+
 namespace takt::twin {
 
 namespace abortcode = wire::abortcode;
@@ -226,7 +228,7 @@ std::uint32_t CoeServer::checkValue(const DictionaryEntry& entry,
         !traits_.supportsHoming(static_cast<std::int8_t>(value))) {
         return abortcode::OutOfRange;
     }
-    return 0;
+    return parameters_.refusal(entry.index, entry.subindex, value);
 }
 
 std::uint32_t CoeServer::download(std::uint16_t index, std::uint8_t subindex,
@@ -250,6 +252,7 @@ std::uint32_t CoeServer::download(std::uint16_t index, std::uint8_t subindex,
     const auto value = dictionary_.bytes(*entry);
     const auto end = std::copy(data.begin(), data.end(), value.begin());
     std::fill(end, value.end(), std::uint8_t{0});
+    parameters_.written(*entry);
     return 0;
 }
 

@@ -11,14 +11,20 @@
 
 namespace takt::twin {
 
+class DriveParameters;
+
 /// The SDO server of a device (ETG.1000.6 clause 5.6.2): expedited, normal and segmented transfers.
 /// Complete access is for downloads that one message holds, and for devices that offer it; all
 /// other is refused, which masters must take for an answer.
 class CoeServer {
 public:
     CoeServer(const DriveTraits& traits, ObjectDictionary& dictionary, PdoConfiguration& pdos,
-              bool completeAccess)
-        : traits_{traits}, dictionary_{dictionary}, pdos_{pdos}, completeAccess_{completeAccess} {}
+              DriveParameters& parameters, bool completeAccess)
+        : traits_{traits},
+          dictionary_{dictionary},
+          pdos_{pdos},
+          parameters_{parameters},
+          completeAccess_{completeAccess} {}
 
     /// rt. Answers one SDO request. `request` and `reply` begin behind the CoE header.
     /// \return bytes of the reply; 0 = no reply
@@ -57,6 +63,7 @@ private:
     const DriveTraits& traits_;
     ObjectDictionary& dictionary_;
     PdoConfiguration& pdos_;
+    DriveParameters& parameters_;
     bool completeAccess_;
 
     Transfer transfer_{Transfer::None};

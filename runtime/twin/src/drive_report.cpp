@@ -10,15 +10,11 @@ using core::cia402::Mode;
 namespace {
 
 constexpr std::uint16_t QuickStopInactive = 0x0020;
-constexpr std::uint16_t DcLocked = 0x0100;   // bit 8
-constexpr std::uint16_t ZeroSpeed = 0x4000;  // bit 14
-constexpr std::uint16_t Homed = 0x8000;      // bit 15
-constexpr std::int64_t PositionWindow = 10;  // counts, 6067h as delivered
-
-// 60FDh, CiA 402 bits.
-constexpr std::uint32_t NegativeLimitInput = 0x1;
-constexpr std::uint32_t PositiveLimitInput = 0x2;
-constexpr std::uint32_t HomeInput = 0x4;
+constexpr std::uint16_t DcLocked = 0x0100;             // bit 8
+constexpr std::uint16_t ZeroSpeed = 0x4000;            // bit 14
+constexpr std::uint16_t Homed = 0x8000;                // bit 15
+constexpr std::uint16_t SetPointAcknowledge = 0x1000;  // Profile position
+constexpr std::uint16_t SpeedZero = 0x1000;            // Profile velocity
 
 std::uint16_t stateBits(cia::DriveState state) noexcept {
     using State = cia::DriveState;
@@ -68,23 +64,58 @@ std::uint16_t Drive::homingBits() const noexcept {
     return 0;
 }
 
-std::uint16_t Drive::modeBits() const noexcept {
-    if (activeMode_ == static_cast<std::int8_t>(Mode::Homing)) return homingBits();
-    if (activeMode_ != static_cast<std::int8_t>(Mode::CyclicSynchronousPosition)) return 0;
+std::uint16_t Drive::positionBits() const noexcept {
     std::uint16_t bits = followingFault_ ? cia::FollowingErrorBit : std::uint16_t{0};
+    if (blocked_ || softLimited_) bits |= cia::InternalLimit;
+    if (reached_) bits |= cia::TargetReached;
+    return bits;
+}
+
+std::uint16_t Drive::profileBits() const noexcept {
+    std::uint16_t bits = positionBits();
+    // While halted bit 10 means standstill instead.
+    if (halted_) bits &= static_cast<std::uint16_t>(~cia::TargetReached);
+    if (halted_ && motorStands()) bits |= cia::TargetReached;
+    if (setPoints_.acknowledged()) bits |= SetPointAcknowledge;
+    return bits;
+}
+
+std::uint16_t Drive::velocityBits() const noexcept {
+    std::uint16_t bits = blocked_ || softLimited_ ? cia::InternalLimit : std::uint16_t{0};
+    if (halted_ ? motorStands() : reached_) bits |= cia::TargetReached;
+    if (motorStands()) bits |= SpeedZero;
+    return bits;
+}
+
+std::uint16_t Drive::modeBits() const noexcept {
     const bool follows =
         state_ == State::OperationEnabled && stop_ == Stop::None && !blocked_ && !halted_;
-    if (follows) bits |= cia::DriveFollowsCommand;
-    if (blocked_) bits |= cia::InternalLimit;
-    const bool near = followingError_ <= PositionWindow && followingError_ >= -PositionWindow;
-    if (powered_ && near && demand_.velocity == 0.0) bits |= cia::TargetReached;
-    return bits;
+    const std::uint16_t following = follows ? cia::DriveFollowsCommand : std::uint16_t{0};
+    switch (static_cast<Mode>(activeMode_)) {
+        case Mode::ProfilePosition:
+            return profileBits();
+        case Mode::ProfileVelocity:
+            return velocityBits();
+        case Mode::Homing:
+            return homingBits();
+        case Mode::CyclicSynchronousPosition:
+            return positionBits() | following;
+        case Mode::CyclicSynchronousVelocity:
+            return following | (blocked_ || softLimited_ ? cia::InternalLimit : std::uint16_t{0});
+        case Mode::CyclicSynchronousTorque:
+            return following;
+        case Mode::ProfileTorque:
+        case Mode::None:
+            return 0;
+    }
+    return 0;
 }
 
 std::uint16_t Drive::statusWord(bool outputsValid, bool dcLocked) const noexcept {
     auto word = static_cast<std::uint16_t>(stateBits(state_) | modeBits());
     if (state_ != State::NotReadyToSwitchOn) word |= cia::VoltageEnabled;
     if (outputsValid) word |= cia::Remote;
+    if (warning_ != 0) word |= cia::Warning;
     if (traits_.dcLockedInBit8 && dcLocked) word |= DcLocked;
     if (traits_.zeroSpeedInBit14 && motorStands()) word |= ZeroSpeed;
     if (traits_.homedInBit15 && homed_) word |= Homed;
@@ -92,21 +123,24 @@ std::uint16_t Drive::statusWord(bool outputsValid, bool dcLocked) const noexcept
 }
 
 void Drive::report(bool outputsValid, bool dcLocked) noexcept {
-    const auto perTurn =
-        traits_.unit == MotionUnit::TenthRpm ? 600.0 : static_cast<double>(scale_.countsPerTurn());
+    const auto perTurn = traits_.unit == MotionUnit::TenthRpm ? 600.0 : scale_.countsPerTurn();
     dictionary_.set(objects_.statusWord, statusWord(outputsValid, dcLocked));
     dictionary_.set(objects_.modeDisplay, activeMode_);
     dictionary_.set(objects_.positionActual, userPosition(motor_.position()));
     dictionary_.set(objects_.positionDemand, userPosition(demand_.position));
     dictionary_.set(objects_.velocityActual,
                     static_cast<std::int64_t>(motor_.velocity() * perTurn));
+    dictionary_.set(objects_.velocityDemand,
+                    powered_ ? static_cast<std::int64_t>(demand_.velocity * perTurn) : 0);
+    const double demanded = source_ == Source::Torque ? torqueDemand_ : torque_;
+    dictionary_.set(
+        objects_.torqueDemand,
+        powered_ ? static_cast<std::int64_t>(demanded / traits_.ratedTorque * 1000.0) : 0);
     dictionary_.set(objects_.torqueActual,
                     static_cast<std::int64_t>(torque_ / traits_.ratedTorque * 1000.0));
     dictionary_.set(objects_.followingError, followingError_);
-    const std::uint32_t inputs = (motor_.negativeLimit() ? NegativeLimitInput : 0U) |
-                                 (motor_.positiveLimit() ? PositiveLimitInput : 0U) |
-                                 (motor_.homeSwitch() ? HomeInput : 0U);
-    dictionary_.set(objects_.digitalInputs, inputs);
+    dictionary_.set(objects_.digitalInputs, digitalInputs());
+    reportProbes();
 }
 
 }  // namespace takt::twin

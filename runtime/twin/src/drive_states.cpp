@@ -1,6 +1,7 @@
 // The power drive state machine of IEC 61800-7-201 clause 6, with the stop options of clause 7.
 
 #include "drive.hpp"
+#include "drive_alarms.hpp"
 
 namespace takt::twin {
 
@@ -19,6 +20,13 @@ constexpr std::int64_t QuickStopByProfile = 1;
 constexpr std::int64_t QuickStopByRamp = 2;
 constexpr std::int64_t QuickStopByProfileStay = 5;
 constexpr std::int64_t QuickStopByRampStay = 6;
+
+constexpr std::uint16_t GearFault = 0xFF09;  // CD300E: gear ratio outside its range
+
+// 605Eh; more than 2 stops at the limit of the current or voltage.
+constexpr std::int64_t FaultReactionCoast = 0;
+constexpr std::int64_t FaultReactionByProfile = 1;
+constexpr std::int64_t FaultReactionByRamp = 2;
 
 }  // namespace
 
@@ -39,6 +47,7 @@ void Drive::stepStates(std::uint16_t controlWord) noexcept {
     const bool reset =
         (controlWord & cia::FaultReset) != 0 && (lastControl_ & cia::FaultReset) == 0;
     const bool off = command == Command::DisableVoltage || command == Command::QuickStop;
+    if (reset) clearWarning();
     finishStop();
     if (command != Command::Enable || state_ != State::SwitchedOn) enabling_ = core::Duration{-1};
     switch (state_) {
@@ -59,7 +68,11 @@ void Drive::stepStates(std::uint16_t controlWord) noexcept {
             if (command == Command::Enable) {
                 enabling_ =
                     enabling_ < core::Duration{0} ? core::Duration{0} : enabling_ + cycleTime_;
-                if (enabling_ >= traits_.enableTime) powerOn();
+                if (!gearValid_) {
+                    fail(GearFault, GearFault, traits_.errorRegisterMotion);
+                } else if (enabling_ >= traits_.enableTime) {
+                    powerOn();
+                }
             }
             break;
         case State::OperationEnabled:
@@ -69,11 +82,11 @@ void Drive::stepStates(std::uint16_t controlWord) noexcept {
             stepQuickStop(command);
             break;
         case State::FaultReactionActive:
-            // The power stage was switched off when the fault came; the state shows for one cycle.
-            state_ = State::Fault;
+            // Without a stop the power stage is off already; the state shows for one cycle.
+            if (stop_ == Stop::None) state_ = State::Fault;
             break;
         case State::Fault:
-            if (reset) resetFault();
+            if (reset && resettable_) resetFault();
             break;
     }
 }
@@ -104,6 +117,7 @@ void Drive::stepQuickStop(Command command) noexcept {
     } else if (command == Command::Enable && quickStopStays_) {
         stop_ = Stop::None;
         hold(demand_.position);
+        enterMode(true);
         state_ = State::OperationEnabled;
     }
 }
@@ -118,8 +132,7 @@ void Drive::beginStop(Stop stop) noexcept {
     }
     stop_ = stop;
     homing_.clear();
-    rampDown(velocityTurns(
-        static_cast<std::int64_t>(dictionary_.getUnsigned(objects_.profileDeceleration))));
+    rampDown(rate(objects_.profileDeceleration));
 }
 
 void Drive::beginQuickStop() noexcept {
@@ -132,13 +145,10 @@ void Drive::beginQuickStop() noexcept {
     state_ = State::QuickStopActive;
     quickStopStays_ = code >= QuickStopByProfileStay;
     homing_.clear();
-    const auto ramp = [&](ObjectRef object) {
-        return velocityTurns(static_cast<std::int64_t>(dictionary_.getUnsigned(object)));
-    };
     if (code == QuickStopByProfile || code == QuickStopByProfileStay) {
-        rampDown(ramp(objects_.profileDeceleration));
+        rampDown(rate(objects_.profileDeceleration));
     } else if (code == QuickStopByRamp || code == QuickStopByRampStay) {
-        rampDown(ramp(objects_.quickStopDeceleration));
+        rampDown(rate(objects_.quickStopDeceleration));
     } else {
         hold(motor_.position());  // at once, with all the torque there is
     }
@@ -160,6 +170,9 @@ void Drive::finishStop() noexcept {
         case Stop::Disable:
             powerOff(State::SwitchedOn);
             return;
+        case Stop::Fault:
+            powerOff(State::Fault);
+            return;
     }
 }
 
@@ -167,10 +180,10 @@ void Drive::powerOn() noexcept {
     state_ = State::OperationEnabled;
     powered_ = true;
     stop_ = Stop::None;
-    halted_ = false;
-    blocked_ = false;
     servo_.reset(motor_);
+    torque_ = 0.0;
     hold(motor_.position());
+    enterMode((lastControl_ & cia::HomingStart) != 0);
 }
 
 void Drive::powerOff(State next) noexcept {
@@ -178,13 +191,20 @@ void Drive::powerOff(State next) noexcept {
     powered_ = false;
     stop_ = Stop::None;
     blocked_ = false;
+    softLimited_ = false;
     enabling_ = core::Duration{-1};
     if (homing_.state() != Homing::State::Done) homing_.clear();
 }
 
 void Drive::fail(std::uint16_t code, std::uint16_t panel, std::uint8_t errorRegister) noexcept {
     if (state_ == State::Fault || state_ == State::FaultReactionActive) return;
-    powerOff(powered_ ? State::FaultReactionActive : State::Fault);
+    resettable_ = true;
+    const std::int64_t reaction = dictionary_.getSigned(objects_.faultOption);
+    if (powered_ && reaction != FaultReactionCoast) {
+        beginFaultStop(reaction);
+    } else {
+        powerOff(powered_ ? State::FaultReactionActive : State::Fault);
+    }
     dictionary_.set(objects_.errorCode, code);
     dictionary_.set(objects_.errorRegister, errorRegister);
     dictionary_.set(objects_.panelCode, panel);
@@ -197,6 +217,44 @@ void Drive::fail(std::uint16_t code, std::uint16_t panel, std::uint8_t errorRegi
     emergency_ = emergency;
 }
 
+void Drive::beginFaultStop(std::int64_t reaction) noexcept {
+    state_ = State::FaultReactionActive;
+    stop_ = Stop::Fault;
+    homing_.clear();
+    // The demand may be far ahead of a motor that could not follow.
+    hold(motor_.position());
+    demand_.velocity = motor_.velocity();
+    if (reaction == FaultReactionByProfile) rampDown(rate(objects_.profileDeceleration));
+    if (reaction == FaultReactionByRamp) rampDown(rate(objects_.quickStopDeceleration));
+    if (reaction > FaultReactionByRamp) demand_.velocity = 0.0;  // with all the torque there is
+}
+
+bool Drive::raiseAlarm(std::uint16_t number) noexcept {
+    const DriveAlarm* alarm = findAlarm(traits_.name, number);
+    if (alarm == nullptr) return false;
+    const bool failed = state_ == State::Fault || state_ == State::FaultReactionActive;
+    if (alarm->kind == AlarmKind::Warning) {
+        warning_ = number;
+        if (!failed) dictionary_.set(objects_.errorCode, alarm->errorCode);
+        if (!failed) dictionary_.set(objects_.panelCode, number);
+        return true;
+    }
+    if (failed) return true;  // the first one stays
+    fail(alarm->errorCode, number,
+         alarm->kind == AlarmKind::Bus ? traits_.errorRegisterBus : traits_.errorRegisterMotion);
+    resettable_ = alarm->resettable;
+    return true;
+}
+
+void Drive::clearWarning() noexcept {
+    const bool failed = state_ == State::Fault || state_ == State::FaultReactionActive;
+    if (warning_ == 0) return;
+    warning_ = 0;
+    if (failed) return;
+    dictionary_.set(objects_.errorCode, 0);
+    dictionary_.set(objects_.panelCode, 0);
+}
+
 void Drive::resetFault() noexcept {
     state_ = State::SwitchOnDisabled;
     followingFault_ = false;
@@ -204,6 +262,20 @@ void Drive::resetFault() noexcept {
     dictionary_.set(objects_.errorCode, 0);
     dictionary_.set(objects_.errorRegister, 0);
     dictionary_.set(objects_.panelCode, 0);
+}
+
+void Drive::restart() noexcept {
+    powerOff(State::NotReadyToSwitchOn);
+    resetFault();
+    warning_ = 0;
+    load_ = 0.0;
+    state_ = State::NotReadyToSwitchOn;
+    sinceStart_ = core::Duration{0};
+    dictionary_.set(objects_.mode, traits_.powerUpMode);
+    homing_.clear();
+    homed_ = false;
+    zero_ = 0;  // the absolute encoder knows where it is, not where home was
+    hold(motor_.position());
 }
 
 void Drive::communicationLost() noexcept {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <takt/core/cia402.hpp>
 #include <takt/twin/drive_traits.hpp>
 
 #include "homing_sequence.hpp"
@@ -29,10 +28,24 @@ constexpr DriveTraits makeCd300e() {
     traits.shutdownDefault = 0;
     traits.disableDefault = 0;
     traits.homedInBit15 = true;
+    traits.storesByCommand = true;
+    traits.overloadAlarm = 0xFF01;
+    traits.overloadWarning = 0x0003;
+    traits.gearObjects = true;
+    traits.modes = 0x3AD;
+    traits.startsOnModeChange = true;
+    traits.changeOnSetPoint = true;
+    traits.limitsInTorqueModes = false;
+    traits.torqueModeSpeedObject = 0x4010;
+    traits.torqueModeSpeedSubindex = 0x6A;
+    traits.softLimitSwitchObject = 0x4010;
+    traits.softLimitSwitchSubindex = 0x4A;
+    traits.softLimitsYieldToSwitches = true;
+    traits.softLimitsLessHomeOffset = false;
     traits.truncatesPositions = true;
-    traits.homingTable = HomingTable::Cd300e;
-    traits.homeReference = HomeReference::Standstill;
-    traits.movesToHomeOffset = true;
+    traits.homing.methods = HomingMethods::WithHardStops;
+    traits.homing.reference = HomeReference::Standstill;
+    traits.homing.movesToOffset = true;
     traits.followingWindow = 50000;
     traits.followingTimeout = 10;
     traits.powerUpMode = 1;
@@ -58,11 +71,22 @@ constexpr DriveTraits makeRa() {
     // Transition 16 is listed, so Quick stop active is a resting state after a ramp by 6085h.
     traits.quickStopDefault = 6;
     traits.disableDefault = 0;
-    traits.haltInCsp = true;
+    traits.haltInCyclicModes = true;
+    // 6502h reads 3A0h, without PP, which two chapters describe.
+    traits.modes = 0x3A1;
+    traits.volatilePairs = true;
+    traits.virtualInputs = true;
+    traits.probeCountsInStatus = true;
+    traits.overloadAlarm = 0x130;
+    traits.overloadWarning = 0x910;
+    traits.torqueSlopeIsTime = true;
+    traits.profileSpeedInTorque = true;
     traits.dcLockedInBit8 = true;
     traits.zeroSpeedInBit14 = true;
     traits.unit = MotionUnit::TenthRpm;
-    traits.homingMethodZeroAllowed = false;
+    traits.homing.methods = HomingMethods::WithoutReversal;
+    traits.homing.zeroAllowed = false;
+    traits.homing.backsOffSlowly = false;
     traits.followingWindow = 3840000;
     return traits;
 }
@@ -70,6 +94,9 @@ constexpr DriveTraits makeRa() {
 constexpr DriveTraits makeGeneric() {
     DriveTraits traits;
     traits.name = "generic";
+    traits.modes = 0x3AD;
+    traits.faultReactionDefault = 2;
+    traits.changeOnSetPoint = true;
     return traits;
 }
 
@@ -89,13 +116,11 @@ bool DriveTraits::allowsCycle(core::Duration cycle) const noexcept {
 }
 
 bool DriveTraits::supportsMode(std::int8_t mode) const noexcept {
-    using core::cia402::Mode;
-    return mode == static_cast<std::int8_t>(Mode::CyclicSynchronousPosition) ||
-           mode == static_cast<std::int8_t>(Mode::Homing);
+    return mode >= 1 && mode <= 32 && (modes >> (mode - 1) & 1U) != 0;
 }
 
 bool DriveTraits::supportsHoming(std::int8_t method) const noexcept {
-    return (method == 0 && homingMethodZeroAllowed) || homingSupported(homingTable, method);
+    return (method == 0 && homing.zeroAllowed) || homingSupported(homing.methods, method);
 }
 
 const DriveTraits& driveTraits(std::string_view profile) noexcept {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "homing_sequence.hpp"
 #include "motion_generator.hpp"
 
@@ -14,7 +16,8 @@ struct HomingSettings {
     double offset{0.0};  ///< move by this after the search, when `movesToOffset`
     double offsetSpeed{0.0};
     bool movesToOffset{false};
-    HomeReference reference{HomeReference::LatchedEdge};
+    double blockTorque{0.0};  ///< Nm, standing under more than this is a hard stop
+    HomingTraits traits;
 };
 
 /// Homing inside the drive: an interpreter of the step tables. It is stepped with the control loop
@@ -32,28 +35,38 @@ public:
     };
 
     /// rt. Starts a run. The generator must hold the present demand.
-    void start(const HomingSettings& settings, HomingTable table, const Motor& motor,
+    void start(const HomingSettings& settings, const Motor& motor,
                MotionGenerator& generator) noexcept;
+    /// rt. Switches that count as active beside those of the mechanics: inputs that the controller
+    /// feeds in over the bus.
+    void force(const HomingSignals& forced) noexcept { forced_ = forced; }
     /// rt. Ramps to standstill.
     void interrupt(MotionGenerator& generator) noexcept;
-    /// rt. After each control step.
-    void step(const Motor& motor, MotionGenerator& generator) noexcept;
+    /// rt. After each control step, in which the motor was given `torque` (Nm).
+    void step(const Motor& motor, double torque, MotionGenerator& generator) noexcept;
     /// rt. Forgets the run.
     void clear() noexcept { state_ = State::Idle; }
 
     [[nodiscard]] State state() const noexcept { return state_; }
     /// Where home is, in turns. \pre state is ToOffset or Done
     [[nodiscard]] double home() const noexcept { return home_; }
-    [[nodiscard]] const HomingSettings& settings() const noexcept { return settings_; }
+    /// The run ended with a move, and the position is 0 where that ended. \pre state is Done
+    [[nodiscard]] std::optional<double> zero() const noexcept { return zero_; }
 
 private:
     void beginStep(const Motor& motor, MotionGenerator& generator) noexcept;
-    [[nodiscard]] bool happened(HomingEvent event, int direction, const Motor& motor) noexcept;
+    [[nodiscard]] bool happened(const HomingStep& step, const Motor& motor, double torque,
+                                const MotionGenerator& generator) noexcept;
+    [[nodiscard]] bool passedIndex(int direction, const Motor& motor) noexcept;
     [[nodiscard]] bool blocked(const HomingStep& step, const Motor& motor) const noexcept;
-    void found(const Motor& motor, MotionGenerator& generator) noexcept;
+    [[nodiscard]] double speedOf(const HomingStep& step) const noexcept;
+    void act(const HomingStep& step, const Motor& motor, MotionGenerator& generator) noexcept;
+    [[nodiscard]] bool turnsAtLimit(const HomingStep& step, const Motor& motor) noexcept;
+    void found(const HomingStep& step, const Motor& motor, MotionGenerator& generator) noexcept;
     void settle(const Motor& motor, MotionGenerator& generator) noexcept;
     void arrive(MotionGenerator& generator) noexcept;
     void fail(MotionGenerator& generator) noexcept;
+    [[nodiscard]] HomingSignals signalsOf(const Motor& motor) const noexcept;
     void sample(const Motor& motor) noexcept;
 
     State state_{State::Idle};
@@ -61,11 +74,13 @@ private:
     const HomingSequence* sequence_{nullptr};
     std::size_t at_{0};
     bool stopping_{false};
+    HomingSignals forced_;
     HomingSignals signals_;  ///< at the last step
     double position_{0.0};   ///< at the last step
     double event_{0.0};      ///< exact place of the last event
     bool eventIsIndex_{false};
     double home_{0.0};
+    std::optional<double> zero_;
 };
 
 }  // namespace takt::twin

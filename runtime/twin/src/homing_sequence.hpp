@@ -6,7 +6,11 @@
 
 namespace takt::twin {
 
-enum class HomingSpeed : std::uint8_t { Fast, Slow };
+enum class HomingSpeed : std::uint8_t {
+    Fast,
+    Slow,
+    BackOff,  ///< leaving the switch for another approach: slow or fast, as the drive does it
+};
 
 /// What a homing step waits for: an edge of a signal during the step's own motion.
 enum class HomingEvent : std::uint8_t {
@@ -16,7 +20,8 @@ enum class HomingEvent : std::uint8_t {
     PositiveOff,
     NegativeOn,
     NegativeOff,
-    Index,  ///< the next index pulse in the direction of travel
+    Index,     ///< the next index pulse in the direction of travel
+    HardStop,  ///< the motor stands and its current exceeds the threshold
 };
 
 enum class HomingAction : std::uint8_t {
@@ -32,22 +37,27 @@ struct HomingStep {
     HomingAction action{HomingAction::Finish};
 };
 
+/// The situation in which a row of the table applies.
 enum class HomingStart : std::uint8_t {
     Any,
-    HomeOff,
-    HomeOn,
-    PositiveOff,
-    PositiveOn,
-    NegativeOff,
-    NegativeOn,
+    OffHome,
+    OnHome,
+    OffPositive,
+    OnPositive,
+    OffNegative,
+    OnNegative,
+    OffHomeDirect,  ///< as OffHome, for a drive that takes the first edge without backing off
+    LimitFirst,     ///< entered from OffHome when the limit switch comes before the home switch
 };
 
 /// The steps of one method from one start situation.
 struct HomingSequence {
+    static constexpr std::size_t MaxSteps = 5;
+
     std::int8_t method{0};
     HomingStart start{HomingStart::Any};
     std::uint8_t count{0};
-    std::array<HomingStep, 4> steps{};
+    std::array<HomingStep, MaxSteps> steps{};
 };
 
 /// The signals a start situation is judged by.
@@ -57,12 +67,19 @@ struct HomingSignals {
     bool negative{false};
 };
 
-inline constexpr std::int8_t HomeAtPresentPosition = 35;
+/// Whether the method takes the present position as home, without motion.
+[[nodiscard]] constexpr bool homesInPlace(std::int8_t method) noexcept {
+    return method == 35 || method == 37;
+}
 
-/// rt. Whether the table knows the method, 35 included.
-[[nodiscard]] bool homingSupported(HomingTable table, std::int8_t method) noexcept;
-/// rt. The steps for a method from the present situation; null for 35 and for unknown methods.
-[[nodiscard]] const HomingSequence* findHoming(HomingTable table, std::int8_t method,
+/// rt. Whether a drive with these methods knows the method.
+[[nodiscard]] bool homingSupported(HomingMethods methods, std::int8_t method) noexcept;
+/// rt. The steps for a method from the present situation; null where the drive's manual describes
+/// none, and for methods without motion.
+[[nodiscard]] const HomingSequence* findHoming(const HomingTraits& traits, std::int8_t method,
                                                const HomingSignals& signals) noexcept;
+/// rt. How the method goes on when the limit switch comes before the home switch; null if it does
+/// not.
+[[nodiscard]] const HomingSequence* findAfterLimit(std::int8_t method) noexcept;
 
 }  // namespace takt::twin

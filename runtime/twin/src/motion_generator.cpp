@@ -9,45 +9,61 @@ void MotionGenerator::begin(const Demand& from) noexcept {
     demand_ = from;
     demand_.acceleration = 0.0;
     toTarget_ = false;
+    passed_ = false;
     speed_ = 0.0;
 }
 
-void MotionGenerator::run(double velocity, double acceleration) noexcept {
+void MotionGenerator::run(double velocity, double acceleration, double deceleration) noexcept {
     toTarget_ = false;
+    passed_ = false;
     speed_ = velocity;
     acceleration_ = acceleration;
+    deceleration_ = deceleration;
 }
 
-void MotionGenerator::moveTo(double position, double speed, double acceleration) noexcept {
+void MotionGenerator::moveTo(double position, const MotionLimits& limits,
+                             double endSpeed) noexcept {
     toTarget_ = true;
+    passed_ = false;
     target_ = position;
-    speed_ = speed;
-    acceleration_ = acceleration;
+    speed_ = limits.speed;
+    endSpeed_ = endSpeed;
+    acceleration_ = limits.acceleration;
+    deceleration_ = limits.deceleration;
+}
+
+double MotionGenerator::wanted(double seconds) const noexcept {
+    if (!toTarget_) return speed_;
+    const double distance = target_ - demand_.position;
+    const double length = distance < 0.0 ? -distance : distance;
+    // The speed from which the rest of the way is enough to slow down, and no faster than to
+    // arrive, unless it goes on behind the target.
+    const double braking = std::sqrt(endSpeed_ * endSpeed_ + 2.0 * deceleration_ * length);
+    const double arriving = std::max(length / seconds, endSpeed_);
+    const double speed = std::min({speed_, braking, arriving});
+    return distance < 0.0 ? -speed : speed;
 }
 
 const Demand& MotionGenerator::step(double seconds) noexcept {
-    double wanted = speed_;
-    if (toTarget_) {
-        const double distance = target_ - demand_.position;
-        const double length = distance < 0.0 ? -distance : distance;
-        // The speed from which the rest of the way is enough to stop, and no faster than to arrive.
-        const double braking = std::sqrt(2.0 * acceleration_ * length);
-        wanted = std::min({speed_, braking, length / seconds});
-        if (distance < 0.0) wanted = -wanted;
-    }
-    const double change = acceleration_ * seconds;
-    const double velocity =
-        std::clamp(wanted, demand_.velocity - change, demand_.velocity + change);
-    demand_.acceleration = (velocity - demand_.velocity) / seconds;
+    const double before = demand_.velocity;
+    const double faster = acceleration_ * seconds;
+    const double slower = deceleration_ * seconds;
+    const double up = before >= 0.0 ? faster : slower;
+    const double down = before > 0.0 ? slower : faster;
+    const double velocity = std::clamp(wanted(seconds), before - down, before + up);
+    demand_.acceleration = (velocity - before) / seconds;
     demand_.velocity = velocity;
+    const double ahead = target_ - demand_.position;
     demand_.position += velocity * seconds;
-    if (toTarget_) {
-        const double left = target_ - demand_.position;
-        const double near = change * seconds;
-        if (left <= near && left >= -near && velocity <= 2.0 * change &&
-            velocity >= -2.0 * change) {
-            demand_ = {target_, 0.0, 0.0};
-        }
+    if (!toTarget_) return demand_;
+    const double left = target_ - demand_.position;
+    if (endSpeed_ > 0.0) {
+        passed_ = passed_ || left == 0.0 || (left > 0.0) != (ahead > 0.0);
+        return demand_;
+    }
+    const double near = slower * seconds;
+    if (left <= near && left >= -near && velocity <= 2.0 * slower && velocity >= -2.0 * slower) {
+        demand_ = {target_, 0.0, 0.0};
     }
     return demand_;
 }

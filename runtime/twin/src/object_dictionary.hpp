@@ -63,6 +63,8 @@ public:
                                               std::uint8_t subindex) const noexcept;
     /// rt. Whether the object has any visible entry.
     [[nodiscard]] bool contains(std::uint16_t index) const noexcept;
+    /// rt. All entries, ascending (index, sub-index).
+    [[nodiscard]] std::span<const DictionaryEntry> entries() const noexcept { return entries_; }
     /// rt.
     [[nodiscard]] std::span<std::uint8_t> bytes(const DictionaryEntry& entry) noexcept {
         return std::span{values_}.subspan(entry.offset, entry.size);

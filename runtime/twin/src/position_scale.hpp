@@ -11,8 +11,9 @@ public:
     static constexpr int EncoderBits = 23;
     static constexpr std::int64_t IncrementsPerTurn = std::int64_t{1} << EncoderBits;
 
-    PositionScale(std::int64_t countsPerTurn, bool truncates) noexcept
-        : countsPerTurn_{countsPerTurn}, truncates_{truncates} {}
+    /// `counts` user counts in `turns` turns of the motor; both at least 1.
+    PositionScale(std::int64_t counts, bool truncates, std::int64_t turns = 1) noexcept
+        : counts_{counts}, increments_{IncrementsPerTurn * turns}, truncates_{truncates} {}
 
     /// rt. Encoder increments of a motor position in turns.
     [[nodiscard]] static std::int64_t increments(double turns) noexcept {
@@ -24,13 +25,16 @@ public:
     }
     /// rt. User counts shown for a number of increments.
     [[nodiscard]] std::int64_t counts(std::int64_t increments) const noexcept {
-        return scale(increments, countsPerTurn_, IncrementsPerTurn);
+        return scale(increments, counts_, increments_);
     }
     /// rt. Increments demanded by a number of user counts.
     [[nodiscard]] std::int64_t fromCounts(std::int64_t counts) const noexcept {
-        return scale(counts, IncrementsPerTurn, countsPerTurn_);
+        return scale(counts, increments_, counts_);
     }
-    [[nodiscard]] std::int64_t countsPerTurn() const noexcept { return countsPerTurn_; }
+    [[nodiscard]] double countsPerTurn() const noexcept {
+        return static_cast<double>(counts_) *
+               (static_cast<double>(IncrementsPerTurn) / static_cast<double>(increments_));
+    }
 
 private:
     /// value · numerator / denominator without overflow; towards zero, or to the nearest.
@@ -42,7 +46,8 @@ private:
         return whole * numerator + rest / denominator;
     }
 
-    std::int64_t countsPerTurn_;
+    std::int64_t counts_;      ///< user counts …
+    std::int64_t increments_;  ///< … in these increments
     bool truncates_;
 };
 

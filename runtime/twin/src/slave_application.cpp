@@ -110,9 +110,11 @@ SlaveApplication::SlaveApplication(const wire::DeviceDescription& device,
       dictionary_{device},
       syncObjects_{dictionary_, device},
       pdos_{device, traits_, dictionary_},
-      coe_{traits_, dictionary_, pdos_, device.mailbox && device.mailbox->completeAccess},
-      mailbox_{controller.syncManagers(), coe_, places_.mailboxOut, places_.mailboxIn},
       drive_{params, traits_, dictionary_, cycle},
+      parameters_{dictionary_, traits_, drive_},
+      coe_{traits_, dictionary_, pdos_, parameters_,
+           device.mailbox && device.mailbox->completeAccess},
+      mailbox_{controller.syncManagers(), coe_, places_.mailboxOut, places_.mailboxIn},
       ownCycle_{cycle},
       cycle_{cycle} {
     events_.schedule(EventKind::Tick, core::TrueTime{cycle});
@@ -192,6 +194,7 @@ void SlaveApplication::period(core::TrueTime now) noexcept {
     stepsDone_ = 0;
     lastPeriod_ = now;
     ++cycles_;
+    parameters_.pass(cycle_);
     if (waitingForOp_) waitForOp(now);
     if (state_ == AlState::Op) superviseOutputs(now);
     exchange();

@@ -8,6 +8,7 @@
 
 #include "coe_server.hpp"
 #include "drive.hpp"
+#include "drive_parameters.hpp"
 #include "event_queue.hpp"
 #include "mailbox_server.hpp"
 #include "object_dictionary.hpp"
@@ -40,6 +41,12 @@ public:
     void onFrame(const FrameEvents& happened, core::TrueTime now) noexcept;
     /// rt. An event of the device is due; SYNC0 has been generated already.
     void onEvent(EventKind kind, core::TrueTime now) noexcept;
+
+    /// rt. An alarm of the drive happens now.
+    bool raiseAlarm(std::uint16_t number, core::TrueTime now) noexcept {
+        catchUp(now);
+        return drive_.raiseAlarm(number);
+    }
 
     [[nodiscard]] const Drive& drive() const noexcept { return drive_; }
     [[nodiscard]] wire::AlState state() const noexcept { return state_; }
@@ -86,9 +93,10 @@ private:
     ObjectDictionary dictionary_;
     SyncObjects syncObjects_;
     PdoConfiguration pdos_;
+    Drive drive_;
+    DriveParameters parameters_;
     CoeServer coe_;
     MailboxServer mailbox_;
-    Drive drive_;
 
     wire::AlState state_{wire::AlState::Init};
     bool waitingForOp_{false};

@@ -123,6 +123,11 @@ void Twin::cutCable(bool cut) noexcept {
     world_->segment.cutCable(cut);
 }
 
+bool Twin::raiseAlarm(std::size_t device, std::uint16_t number) noexcept {
+    Segment& segment = world_->segment;
+    return segment.device(device).application.raiseAlarm(number, segment.now());
+}
+
 DeviceProbe Twin::probe(std::size_t device) const {
     const Segment& segment = world_->segment;
     const SimulatedDevice& simulated = segment.device(device);

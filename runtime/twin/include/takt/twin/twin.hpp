@@ -73,6 +73,9 @@ public:
     void onSync0(std::function<void(std::size_t device, core::TrueTime)> observer);
     /// \pre device < deviceCount()
     [[nodiscard]] DeviceProbe probe(std::size_t device) const;
+    /// An alarm or warning of a drive happens now, by the number on its display: 8611h for Er.8611,
+    /// 600h for E.600. \return false when that drive has no such alarm. \pre device < deviceCount()
+    bool raiseAlarm(std::size_t device, std::uint16_t number) noexcept;
     /// Cuts or mends the cable between host and first device.
     void cutCable(bool cut) noexcept;
 
