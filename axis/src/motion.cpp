@@ -3,6 +3,7 @@
 #include <takt/axis/admit.hpp>
 #include <takt/axis/motion.hpp>
 #include <takt/planner/profile_query.hpp>
+#include <takt/planner/take_over.hpp>
 
 namespace takt::axis {
 
@@ -67,19 +68,12 @@ ErrorId Motion::begin(const Command& command) noexcept {
     return ErrorId::InvalidParameter;
 }
 
-/// Taking the present acceleration back with a gentle jerk gains velocity (a²/2j). Where that would
-/// pass the axis' limit, the jerk is raised: the motion so far kept the limit, so its own jerk is
-/// enough.
+/// A gentle jerk must not let the velocity pass the axis' limit: the motion so far has kept it, so
+/// its own jerk is enough.
 Dynamics Motion::holdingVelocity(const Dynamics& dynamics) const noexcept {
+    const LimitParams& l = traits_->limits;
     Dynamics d = dynamics;
-    const double a = set_.acceleration.count();
-    if (a == 0.0) return d;
-    const double limit = traits_->limits.velocity.count();
-    const double v = set_.velocity.count();
-    const double room = a > 0.0 ? limit - v : limit + v;
-    const double hardest = std::max(traits_->limits.jerk, traits_->limits.stopJerk).count();
-    const double needed = room > 0.0 ? std::min(a * a / (2.0 * room), hardest) : hardest;
-    d.jerk = std::max(d.jerk, core::Jerk{needed});
+    d.jerk = planner::takeOverJerk(set_, braking(dynamics), std::max(l.jerk, l.stopJerk));
     return d;
 }
 

@@ -8,18 +8,20 @@
 
 namespace takt::planner::detail {
 
+double positionGrain(const State& from, const State& to, const Limits& limits) noexcept {
+    const double positions = std::fabs(from.position.count()) + std::fabs(to.position.count());
+    const double range = (limits.maxVelocity - limits.minVelocity).count();
+    const double least = std::min(limits.maxAcceleration.count(), -limits.minAcceleration.count());
+    const double length = range * (range / least + least / limits.jerk.count());
+    return kEps * (8.0 * positions + (std::isfinite(length) ? 2.0 * length : 0.0));
+}
+
 namespace {
 
 Problem problemOf(const State& from, const State& to, const Limits& limits,
                   const Resolution& resolution) noexcept {
     const double p0 = from.position.count();
     const double pf = to.position.count();
-    // A sampled state is as exact as the motion it is taken from, not as itself: some ulps of the
-    // positions and of the length that the axis needs to go through its velocities.
-    const double range = limits.maxVelocity.count() - limits.minVelocity.count();
-    const double least = std::min(limits.maxAcceleration.count(), -limits.minAcceleration.count());
-    const double length = range * (range / least + least / limits.jerk.count());
-    const double grain = std::isfinite(length) ? 2.0 * kEps * length : 0.0;
     return {from.velocity.count(),
             from.acceleration.count(),
             to.velocity.count(),
@@ -30,7 +32,7 @@ Problem problemOf(const State& from, const State& to, const Limits& limits,
             limits.maxAcceleration.count(),
             limits.minAcceleration.count(),
             limits.jerk.count(),
-            8.0 * kEps * (std::fabs(p0) + std::fabs(pf)) + grain,
+            positionGrain(from, to, limits),
             resolution.position.count(),
             resolution.velocity.count()};
 }

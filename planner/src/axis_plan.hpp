@@ -6,6 +6,12 @@
 
 namespace takt::planner::detail {
 
+/// What rounding may have done to a distance: a sampled state is as exact as the motion it is taken
+/// from, not as itself, so some ulps of the positions and of the length that the axis needs to go
+/// through its velocities.
+[[nodiscard]] double positionGrain(const State& from, const State& to,
+                                   const Limits& limits) noexcept;
+
 /// One request on its way to a profile: brought back inside its limits, with its fastest answer.
 /// Any later duration can be asked for afterwards.
 class AxisPlan {

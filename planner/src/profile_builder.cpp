@@ -126,6 +126,22 @@ bool ProfileBuilder::joined(const Profile& first, const Profile& second, Profile
     return true;
 }
 
+void ProfileBuilder::carried(const Profile& relative, const State& carrier, Profile& out) noexcept {
+    const auto moved = [&carrier](const State& s, Seconds time) {
+        const Distance way = Distance{carrier.velocity.count() * time.count()};
+        return State{carrier.position + Distance{s.position.count()} + way,
+                     carrier.velocity + s.velocity, s.acceleration};
+    };
+    for (std::size_t i = 0; i < relative.size_; ++i) {
+        Segment segment = relative.segments_[i];
+        segment.from = moved(segment.from, segment.start);
+        out.segments_[i] = segment;
+    }
+    out.size_ = relative.size_;
+    out.duration_ = relative.duration_;
+    out.end_ = moved(relative.end_, relative.duration_);
+}
+
 void ProfileBuilder::setDuration(double duration, Profile& profile) noexcept {
     profile.duration_ = Seconds{duration};
 }

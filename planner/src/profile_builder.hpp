@@ -25,6 +25,8 @@ public:
     /// The share of an axis in a motion along a straight line.
     static void scaled(const Profile& line, double share, const State& from, const State& end,
                        Profile& out) noexcept;
+    /// A motion as seen from a carrier that keeps its velocity, seen from outside.
+    static void carried(const Profile& relative, const State& carrier, Profile& out) noexcept;
     /// The duration that was aimed at, where the sum of the pieces is some ulps off.
     static void setDuration(double duration, Profile& profile) noexcept;
     /// Sets the state that is reached, and sums up the pieces after the longest one backwards from

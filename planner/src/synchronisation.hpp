@@ -18,24 +18,20 @@ struct Group {
     AxisPlan line;
 };
 
+/// The profile of an axis with the first possible duration from `atLeast` on, in whole cycles.
+/// False if there is none.
+[[nodiscard]] bool writeFirstFrom(const AxisPlan& plan, double atLeast, double cycle,
+                                  Profile& out) noexcept;
+
+/// What the slowest axis takes at least, in whole cycles.
+[[nodiscard]] double slowest(const Group& group) noexcept;
+
 /// Every axis for itself. \return the longest duration
 double writeEach(const Group& group, std::span<Profile> out) noexcept;
 
-/// All axes in the same duration, the first from `atLeast` on that is possible for all. \param
-/// ifNecessary axes with targets at rest keep their own duration
-std::optional<double> writeTogether(const Group& group, double atLeast, bool ifNecessary,
+/// All axes in the same duration, the first that is possible for all. \param ifNecessary axes with
+/// targets at rest keep their own duration
+std::optional<double> writeTogether(const Group& group, bool ifNecessary,
                                     std::span<Profile> out) noexcept;
-
-/// The one-axis problem along the straight line on which all states lie, if they do: the request of
-/// the axis that goes farthest, with the limits of all, and the share of each axis in its way.
-struct Line {
-    AxisRequest request;
-    std::array<double, Trajectory::maxAxes> share;
-};
-[[nodiscard]] std::optional<Line> findLine(std::span<const AxisRequest> requests) noexcept;
-
-/// \return the duration, or nothing if it is not possible within `atMost`
-std::optional<double> writeLine(Group& group, const Line& line, double atMost,
-                                std::span<Profile> out) noexcept;
 
 }  // namespace takt::planner::detail

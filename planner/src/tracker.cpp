@@ -1,38 +1,30 @@
 #include <algorithm>
 #include <cmath>
-#include <takt/planner/profile_query.hpp>
 #include <takt/planner/tracker.hpp>
+
+#include "intercept.hpp"
 
 namespace takt::planner {
 
 using core::Acceleration;
-using core::Position;
 using core::Seconds;
 using core::Velocity;
 
 namespace {
 
-constexpr int kDoublings = 24;
-constexpr int kHalvings = 30;
+/// What rounding may add to a target on its limit, or to one that goes on as it did.
+constexpr double kRounding = 1e-12;
 
-/// Where the target is after `time`, with its acceleration until it reaches what the follower can
-/// do.
-State predicted(const State& target, const Limits& limits, double time) noexcept {
-    const double v =
-        std::clamp(target.velocity.count(), limits.minVelocity.count(), limits.maxVelocity.count());
-    const double a = std::clamp(target.acceleration.count(), limits.minAcceleration.count(),
-                                limits.maxAcceleration.count());
-    // The acceleration has to go back to zero at full jerk before the limit is reached.
-    const double swing = 0.5 * a * std::fabs(a) / limits.jerk.count();
-    const double room =
-        a > 0.0 ? limits.maxVelocity.count() - v - swing : limits.minVelocity.count() - v - swing;
-    const double until = a != 0.0 ? std::max(0.0, room / a) : 0.0;
-    const double p = target.position.count();
-    if (time < until) {
-        return {Position{p + time * (v + 0.5 * a * time)}, Velocity{v + a * time}, Acceleration{a}};
-    }
-    const double end = v + a * until;
-    return {Position{p + until * (v + 0.5 * a * until) + end * (time - until)}, Velocity{end}, {}};
+bool isFinite(const State& s) noexcept {
+    return std::isfinite(s.position.count()) && std::isfinite(s.velocity.count()) &&
+           std::isfinite(s.acceleration.count());
+}
+
+/// The velocity nearest to the target's.
+core::Result<Profile, PlanError> runAfter(const State& from, const State& target,
+                                          const Limits& limits) noexcept {
+    const Velocity velocity = std::clamp(target.velocity, limits.minVelocity, limits.maxVelocity);
+    return plan(from, {TargetKind::Velocity, {from.position, velocity, {}}}, limits);
 }
 
 }  // namespace
@@ -40,66 +32,66 @@ State predicted(const State& target, const Limits& limits, double time) noexcept
 void Tracker::reset(const State& state) noexcept {
     profile_ = Profile::holding(state);
     cyclesDone_ = 0.0;
-    planned_ = false;
+    leadsToTarget_ = false;
     synchronous_ = false;
 }
 
 bool Tracker::isAsPredicted(const State& target) const noexcept {
-    if (!planned_) return false;
     const double t = (cycle_ * cyclesDone_).count();
     const double v = target_.velocity.count();
     const double a = target_.acceleration.count();
     const double way = std::fabs(v) * t + 0.5 * std::fabs(a) * t * t;
     const double p = target_.position.count() + t * (v + 0.5 * a * t);
-    return std::fabs(target.position.count() - p) <= 1e-12 * (std::fabs(p) + way) &&
+    return std::fabs(target.position.count() - p) <= kRounding * (std::fabs(p) + way) &&
            std::fabs(target.velocity.count() - (v + a * t)) <=
-               1e-12 * (std::fabs(v) + std::fabs(a) * t) &&
-           std::fabs(target.acceleration.count() - a) <= 1e-12 * std::fabs(a);
+               kRounding * (std::fabs(v) + std::fabs(a) * t) &&
+           std::fabs(target.acceleration.count() - a) <= kRounding * std::fabs(a);
 }
 
-core::Result<Profile, PlanError> Tracker::intercept(const State& from,
-                                                    const State& target) const noexcept {
-    // The first T in which the place where the target then is can be reached: below it the fastest
-    // way takes longer.
-    const auto late = [&](double time) {
-        const auto result =
-            plan(from, {TargetKind::State, predicted(target, limits_, time)}, limits_);
-        return !result.ok() || result.value().duration().count() > time;
-    };
-    if (!late(0.0)) return plan(from, {TargetKind::State, target}, limits_);
-    double hi = cycle_.count();
-    double lo = 0.0;
-    for (int i = 0; i < kDoublings && late(hi); ++i) {
-        lo = hi;
-        hi *= 2.0;
-    }
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle = 0.5 * (lo + hi);
-        (late(middle) ? lo : hi) = middle;
-    }
-    const Target meeting{TargetKind::State, predicted(target, limits_, hi)};
-    const auto exact = planLasting(from, meeting, limits_, Seconds{hi});
-    return exact.ok() ? exact : plan(from, meeting, limits_);
+/// Whether the target is within the limits in the next cycle too, and stays there if its
+/// acceleration is then taken back.
+bool Tracker::canBeFollowed(const State& target) const noexcept {
+    const double a = target.acceleration.count();
+    const double now = target.velocity.count();
+    const double next = now + a * cycle_.count();
+    const double swing = 0.5 * a * a / limits_.jerk.count();
+    const double highest = std::max(now, next) + (a > 0.0 ? swing : 0.0);
+    const double lowest = std::min(now, next) - (a < 0.0 ? swing : 0.0);
+    const double slack = 1.0 + kRounding;
+    return highest <= limits_.maxVelocity.count() * slack &&
+           lowest >= limits_.minVelocity.count() * slack &&
+           a <= limits_.maxAcceleration.count() * slack &&
+           a >= limits_.minAcceleration.count() * slack;
 }
 
-core::Result<State, PlanError> Tracker::step(const State& target) noexcept {
-    if (!std::isfinite(target.position.count()) || !std::isfinite(target.velocity.count()) ||
-        !std::isfinite(target.acceleration.count())) {
-        return PlanError::NotFinite;
-    }
-    if (!isAsPredicted(target)) {
-        const State now = sample(profile_, cycle_ * cyclesDone_);
-        const auto result = intercept(now, target);
-        if (!result.ok()) return result.error();
-        profile_ = result.value();
-        target_ = target;
-        cyclesDone_ = 0.0;
-        planned_ = true;
+std::optional<PlanError> Tracker::planAgain(const State& target) noexcept {
+    const State now = sample(profile_, cycle_ * cyclesDone_);
+    const bool follow = canBeFollowed(target);
+    const bool uniform = !follow || target.acceleration == Acceleration{};
+    auto result = uniform ? detail::interceptUniform(now, target, limits_)
+                          : detail::interceptAccelerated(now, target, limits_, cycle_.count());
+    leadsToTarget_ = follow && result.ok();
+    if (!result.ok()) result = runAfter(now, target, limits_);
+    if (!result.ok()) return result.error();
+    profile_ = result.value();
+    target_ = target;
+    cyclesDone_ = 0.0;
+    return std::nullopt;
+}
+
+std::optional<PlanError> Tracker::step(const State& target, State& set) noexcept {
+    std::optional<PlanError> error;
+    if (!isFinite(target)) {
+        error = PlanError::NotFinite;
+        leadsToTarget_ = false;
+    } else if (!leadsToTarget_ || !isAsPredicted(target) || !canBeFollowed(target)) {
+        error = planAgain(target);
     }
     cyclesDone_ += 1.0;
     const Seconds time = cycle_ * cyclesDone_;
-    synchronous_ = time >= profile_.duration();
-    return sample(profile_, time);
+    synchronous_ = leadsToTarget_ && time >= profile_.duration();
+    set = sample(profile_, time);
+    return error;
 }
 
 }  // namespace takt::planner

@@ -2,13 +2,16 @@
 #include <cmath>
 #include <takt/planner/trajectory.hpp>
 
-#include "synchronisation.hpp"
+#include "line.hpp"
 
 namespace takt::planner {
 
 using core::Seconds;
 
 namespace {
+
+/// A straight line is worth a millionth of the time.
+constexpr double kAsFast = 1.0 + 9e-7;
 
 std::optional<InputFault> checkTiming(const Timing& timing) noexcept {
     const auto refuse = [](double value, InputField field) -> std::optional<InputFault> {
@@ -62,29 +65,45 @@ core::Result<Seconds, InputFault> Trajectory::plan(std::span<const AxisRequest> 
                               static_cast<std::uint8_t>(i)};
         }
     }
-    const Synchronisation wanted = timing.synchronisation;
-    std::optional<double> duration;
     bool straight = false;
-    if (wanted == Synchronisation::None) {
-        duration = writeEach(group, next_);
-    } else {
-        const bool ifNecessary = wanted == Synchronisation::TimeIfNecessary;
-        if (wanted == Synchronisation::Phase || wanted == Synchronisation::Line) {
-            const double atMost =
-                wanted == Synchronisation::Line ? std::numeric_limits<double>::infinity() : 0.0;
-            if (const auto line = detail::findLine(requests)) {
-                duration = detail::writeLine(group, *line, atMost, next_);
-            }
-            straight = duration.has_value();
-        }
-        if (!duration)
-            duration = detail::writeTogether(group, group.minDuration, ifNecessary, next_);
-    }
+    const std::optional<double> duration = write(timing.synchronisation, straight);
     if (!duration) return InputFault{PlanError::NoSolution, InputField::None, 0};
     current_.swap(next_);
     straight_ = straight;
     duration_ = Seconds{*duration};
     return duration_;
+}
+
+std::optional<double> Trajectory::write(Synchronisation wanted, bool& straight) noexcept {
+    const detail::Group& group = *work_;
+    switch (wanted) {
+        case Synchronisation::None:
+            return detail::writeEach(group, next_);
+        case Synchronisation::Time:
+        case Synchronisation::TimeIfNecessary:
+            return detail::writeTogether(group, wanted == Synchronisation::TimeIfNecessary, next_);
+        case Synchronisation::Phase:
+        case Synchronisation::Line:
+            break;
+    }
+    return writeStraight(wanted == Synchronisation::Line, straight);
+}
+
+std::optional<double> Trajectory::writeStraight(bool atAnyPrice, bool& straight) noexcept {
+    detail::Group& group = *work_;
+    const auto line = detail::findLine(group.requests);
+    Profile leader;
+    straight = line && detail::planLine(group, *line, leader);
+    std::optional<double> other;
+    if (!straight) return detail::writeTogether(group, false, next_);
+    const double duration = leader.duration().count();
+    if (!atAnyPrice && duration > detail::slowest(group) * kAsFast) {
+        other = detail::writeTogether(group, false, next_);
+        straight = !other || duration <= *other * kAsFast;
+    }
+    if (!straight) return other;
+    detail::writeLine(group, *line, leader, next_);
+    return duration;
 }
 
 void Trajectory::sample(Seconds time, std::span<State> states) const noexcept {

@@ -1,8 +1,8 @@
-"""Counts the planner's instructions with callgrind and compares them with stored figures.
+"""Counts a program's instructions with callgrind and compares them with stored figures.
 
-instruction_gate.py PROGRAM FIGURES.json TOOLCHAIN [--store]
+instruction_gate.py PROGRAM FIGURES.json TOOLCHAIN WORK... [--store]
 
-Fails when a figure is exceeded by more than 3 %. Figures are kept per compiler and processor; where there are
+A work `solve-3` is what `PROGRAM solve 3` does a thousand times in the function countedSolve. Fails when a figure is exceeded by more than 3 %. Figures are kept per compiler and processor; where there are
 none for this one, or no valgrind, the test is skipped (exit 77). --store writes the figures measured.
 """
 
@@ -15,28 +15,31 @@ import sys
 import tempfile
 
 ALLOWANCE = 0.03
-WORK = [("solve", axes) for axes in (1, 3, 6)] + [("sample", 3)]
+TIMES = 1000
 
 
-def instructions(program, what, axes):
-    function = {"solve": "countedSolve", "sample": "countedSample"}[what]
+def instructions(program, work):
+    what, size = work.split("-")
+    function = f"counted{what.capitalize()}"
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run(
             ["valgrind", "--tool=callgrind", "--collect-atstart=no", f"--toggle-collect={function}",
-             f"--callgrind-out-file={os.path.join(folder, 'out')}", program, what, str(axes)],
+             f"--callgrind-out-file={os.path.join(folder, 'out')}", program, what, size],
             capture_output=True, text=True, check=True)
     counted = re.search(r"Collected : (\d+)", run.stderr)
-    return int(counted.group(1)) // 1000
+    return int(counted.group(1)) // TIMES
 
 
 def main():
-    program, figures_file, toolchain = sys.argv[1:4]
+    arguments = [argument for argument in sys.argv[1:] if argument != "--store"]
+    program, figures_file, toolchain = arguments[:3]
+    works = arguments[3:]
     if shutil.which("valgrind") is None:
         print("valgrind is not installed")
         return 77
     with open(figures_file, encoding="utf-8") as file:
         figures = json.load(file)
-    measured = {f"{what}-{axes}": instructions(program, what, axes) for what, axes in WORK}
+    measured = {work: instructions(program, work) for work in works}
     if "--store" in sys.argv:
         figures[toolchain] = measured
         with open(figures_file, "w", encoding="utf-8") as file:

@@ -80,7 +80,7 @@ TEST(Allocation, HappensNeitherInPlanningNorInSampling) {
             planWithin(r.from, r.target, r.limits, {core::Position{-9}, core::Position{9}}));
         Tracker tracker{r.limits, Seconds{0.01}};
         tracker.reset(r.from);
-        static_cast<void>(tracker.step(r.target.state));
+        static_cast<void>(tracker.step(r.target.state, states[0]));
     }
     EXPECT_EQ(allocations, before);
 }

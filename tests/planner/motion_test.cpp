@@ -5,7 +5,6 @@
 #include <takt/planner/cyclic.hpp>
 #include <takt/planner/position_range.hpp>
 #include <takt/planner/profile_query.hpp>
-#include <takt/planner/tracker.hpp>
 #include <takt/planner/trajectory.hpp>
 #include <vector>
 
@@ -48,6 +47,16 @@ TEST(Trajectory, IfNecessaryOnlyMovingTargetsAreSynchronised) {
     ASSERT_TRUE(trajectory.plan(requests, timing).ok());
     EXPECT_LT(trajectory[1].duration().count(), 4.0);
     EXPECT_GE(trajectory[2].duration().count(), 12.0);
+}
+
+TEST(Trajectory, AxesThatNeedNotWaitTakeWholeCyclesToo) {
+    Trajectory trajectory{2};
+    Timing timing;
+    timing.synchronisation = Synchronisation::TimeIfNecessary;
+    timing.cycle = Seconds{0.1};
+    ASSERT_TRUE(trajectory.plan(twoAxes(), timing).ok());
+    const double cycles = trajectory[1].duration().count() / 0.1;  // of 3.17 s
+    EXPECT_NEAR(cycles, 32, 1e-9);
 }
 
 TEST(Trajectory, LeavesAnAxisThatIsNotEnabledWhereItIs) {
@@ -250,51 +259,6 @@ TEST(PositionRange, RefusesATargetOutsideIt) {
     const auto result = planWithin(state(0.5, 0, 0), rest(2), limits(1, 1, 1), range);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error(), PlanError::OutOfRange);
-}
-
-TEST(Tracker, CatchesUpWithARunningMasterAndStaysWithIt) {
-    Tracker tracker{limits(2, 4, 40), Seconds{0.001}};
-    tracker.reset(state(0, 0, 0));
-    int synchronousAt = 0;
-    for (int i = 0; i < 5000; ++i) {
-        const double t = i * 0.001;
-        const auto set = tracker.step(state(1 + t, 1, 0));
-        ASSERT_TRUE(set.ok());
-        if (tracker.isSynchronous() && synchronousAt == 0) synchronousAt = i;
-        if (synchronousAt != 0) {
-            ASSERT_NEAR(set.value().position.count(), 1 + t + 0.001, 1e-11);
-            ASSERT_NEAR(set.value().velocity.count(), 1, 1e-11);
-        }
-    }
-    // By hand, relative to the master: from -1 at -1 to rest, at most +1 faster.
-    EXPECT_GT(synchronousAt, 1500);
-    EXPECT_LT(synchronousAt, 2500);
-}
-
-TEST(Tracker, FollowsAnAcceleratingMasterWithinItsLimits) {
-    Tracker tracker{limits(3, 5, 60), Seconds{0.001}};
-    tracker.reset(state(0, 0, 0));
-    double a = 0.0;
-    for (int i = 0; i < 8000; ++i) {
-        const double t = i * 0.001;
-        const double w = 1.5;
-        const auto set =
-            tracker.step(state(std::sin(w * t), w * std::cos(w * t), -w * w * std::sin(w * t)));
-        ASSERT_TRUE(set.ok());
-        ASSERT_LE(std::fabs(set.value().acceleration.count() - a), 0.06 * (1 + 1e-6)) << i;
-        ASSERT_LE(std::fabs(set.value().velocity.count()), 3 * (1 + 1e-9));
-        a = set.value().acceleration.count();
-        if (t < 3) continue;
-        // The master's jerk is not known to it.
-        ASSERT_NEAR(set.value().position.count(), std::sin(w * (t + 0.001)), 1e-5);
-    }
-}
-
-TEST(Tracker, RefusesAMasterThatIsNotANumber) {
-    Tracker tracker{limits(3, 5, 60), Seconds{0.001}};
-    tracker.reset(state(0, 0, 0));
-    EXPECT_EQ(tracker.step(state(std::nan(""), 0, 0)).error(), PlanError::NotFinite);
-    EXPECT_TRUE(tracker.step(state(1, 0, 0)).ok());
 }
 
 }  // namespace

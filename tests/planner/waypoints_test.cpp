@@ -98,6 +98,41 @@ TEST(Waypoints, AreFasterThanStopping) {
     EXPECT_GT(std::fabs(states[0].velocity.count()), 0.3);
 }
 
+/// The least duration by way of any state of a grid in the point between; a leg that is not
+/// possible takes for ever.
+double bestOfAGrid(const State& from, double between, double to, const Limits& l) {
+    constexpr int kSteps = 40;
+    const auto leg = [&](const State& a, const State& b) {
+        const auto profile = planner::plan(a, {TargetKind::State, b}, l);
+        return profile.ok() ? profile.value().duration().count() : 1e9;
+    };
+    double best = 1e9;
+    for (int i = -kSteps; i <= kSteps; ++i) {
+        for (int k = -kSteps; k <= kSteps; ++k) {
+            const State point = state(between, l.maxVelocity.count() * i / kSteps,
+                                      l.maxAcceleration.count() * k / kSteps);
+            const double in = leg(from, point);
+            if (in < best) best = std::min(best, in + leg(point, state(to, 0, 0)));
+        }
+    }
+    return best;
+}
+
+TEST(Waypoints, AreNearTheBestThatAGridOfStatesFinds) {
+    Random random{33};
+    for (int i = 0; i < 30; ++i) {
+        const Limits l =
+            limits(random.uniform(0.5, 3), random.uniform(1, 10), random.uniform(5, 80));
+        const double between = random.uniform(-2, 2);
+        const double to = random.uniform(-2, 2);
+        const std::vector<State> from(1);
+        const std::vector<Limits> one{l};
+        WaypointTrajectory path{1, 2};
+        const double duration = path.plan(from, positions({between, to}), one).value().count();
+        ASSERT_LE(duration, 1.01 * bestOfAGrid(from[0], between, to, l)) << i;
+    }
+}
+
 TEST(Waypoints, GiveTheSameMotionForTheSameRequest) {
     const std::vector<State> from(1);
     const std::vector<Limits> one{limits(1, 2, 20)};

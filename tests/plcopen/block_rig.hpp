@@ -73,4 +73,9 @@ private:
     }
 };
 
+inline void setMove(MC_MoveAbsolute& move, double position, double velocity = 100.0) {
+    move.Position = position;
+    move.Velocity = velocity;
+}
+
 }  // namespace takt::test

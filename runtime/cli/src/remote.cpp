@@ -118,7 +118,7 @@ std::optional<daemon::ControlReply> Remote::ask(const daemon::ControlRequest& re
     const bool question = request.verb == "status" || request.verb == "events";
     auto last = std::chrono::steady_clock::now();
     while (!keepOn || keepOn()) {
-        if (const auto reply = receive(HeartbeatEvery)) {
+        if (auto reply = receive(HeartbeatEvery)) {
             last = std::chrono::steady_clock::now();
             const bool mine = reply->id == id || reply->id == 0;
             if (mine && reply->kind != daemon::ReplyKind::Accepted) return reply;

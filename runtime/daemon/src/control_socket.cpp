@@ -79,7 +79,7 @@ bool isRunning(const fs::path& socket) {
 }  // namespace
 
 fs::path controlFolder() {
-    if (const fs::path folder = runtimeFolder(); !folder.empty()) return folder;
+    if (fs::path folder = runtimeFolder(); !folder.empty()) return folder;
     if (::access("/run/takt", W_OK) == 0) return "/run/takt";
     return temporaryFolder();
 }

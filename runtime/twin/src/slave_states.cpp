@@ -42,7 +42,6 @@ bool isTransition(AlState from, AlState to) noexcept {
         case AlState::PreOp:
             return to == AlState::Init || to == AlState::SafeOp;
         case AlState::SafeOp:
-            return to != AlState::Boot;
         case AlState::Op:
             return to != AlState::Boot;
         case AlState::None:

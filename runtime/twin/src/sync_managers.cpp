@@ -100,7 +100,11 @@ std::size_t SyncManagers::guardOf(std::size_t address) const noexcept {
     return None;
 }
 
-std::size_t SyncManagers::plainUntil(std::size_t address, std::size_t end) const noexcept {
+std::size_t SyncManagers::stretchEnd(std::size_t sm, std::size_t address,
+                                     std::size_t end) const noexcept {
+    if (sm != None) {
+        return std::min<std::size_t>(end, std::size_t{channels_[sm].start} + channels_[sm].length);
+    }
     for (std::size_t i = 0; i < count_; ++i) {
         const Channel& channel = channels_[i];
         if (channel.enabled && channel.start > address && channel.start < end) end = channel.start;
@@ -161,10 +165,7 @@ bool SyncManagers::read(std::uint16_t address, std::span<std::uint8_t> data,
     const std::size_t end = at + data.size();
     while (at < end) {
         const std::size_t sm = guardOf(at);
-        const std::size_t until =
-            sm == None ? plainUntil(at, end)
-                       : std::min<std::size_t>(
-                             end, std::size_t{channels_[sm].start} + channels_[sm].length);
+        const std::size_t until = stretchEnd(sm, at, end);
         const auto part = data.subspan(at - address, until - at);
         if (sm == None) {
             transfer(part, ram_.subspan(at - reg::ProcessRam, part.size()), combine);
@@ -183,10 +184,7 @@ bool SyncManagers::write(std::uint16_t address, std::span<const std::uint8_t> da
     const std::size_t end = at + data.size();
     while (at < end) {
         const std::size_t sm = guardOf(at);
-        const std::size_t until =
-            sm == None ? plainUntil(at, end)
-                       : std::min<std::size_t>(
-                             end, std::size_t{channels_[sm].start} + channels_[sm].length);
+        const std::size_t until = stretchEnd(sm, at, end);
         const auto part = data.subspan(at - address, until - at);
         if (sm == None) {
             std::copy(part.begin(), part.end(),

@@ -84,7 +84,8 @@ private:
     void decode(std::size_t sm) noexcept;
     void showStatus(std::size_t sm) noexcept;
     [[nodiscard]] std::size_t guardOf(std::size_t address) const noexcept;
-    [[nodiscard]] std::size_t plainUntil(std::size_t address, std::size_t end) const noexcept;
+    [[nodiscard]] std::size_t stretchEnd(std::size_t sm, std::size_t address,
+                                         std::size_t end) const noexcept;
     [[nodiscard]] std::span<std::uint8_t> buffer(const Channel& channel,
                                                  std::uint8_t number) const noexcept;
     bool readGuarded(Channel& channel, std::size_t offset, std::span<std::uint8_t> data,

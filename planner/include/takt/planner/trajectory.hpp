@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <takt/planner/profile.hpp>
 #include <vector>
@@ -17,7 +18,9 @@ enum class Synchronisation : std::uint8_t {
     None,             ///< each axis as fast as it can
     Time,             ///< all arrive together
     TimeIfNecessary,  ///< axes whose target is at rest arrive when they can, the others together
-    Phase,            ///< together, and on a straight line where that takes no longer
+    /// Together, and on a straight line where that takes no longer (by 1e-6): ways, velocities and
+    /// accelerations of all axes are multiples of one vector, which velocity targets can have too.
+    Phase,
     Line,  ///< together, and on a straight line wherever there is one, even if it takes longer
 };
 
@@ -77,6 +80,9 @@ public:
     [[nodiscard]] bool isStraight() const noexcept { return straight_; }
 
 private:
+    [[nodiscard]] std::optional<double> write(Synchronisation wanted, bool& straight) noexcept;
+    [[nodiscard]] std::optional<double> writeStraight(bool atAnyPrice, bool& straight) noexcept;
+
     std::vector<Profile> current_;
     std::vector<Profile> next_;
     std::unique_ptr<detail::Group> work_;
