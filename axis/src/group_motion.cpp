@@ -13,6 +13,14 @@ namespace {
 /// A duration this little (relative to a cycle) above a whole number of cycles is rounding.
 constexpr double kStepTolerance = 1e-9;
 
+/// A brake on a path keeps its limits at the moments of the cycles; between them differences of
+/// positions may be a little larger, for which this is kept back.
+constexpr double kBrakeShare = 0.99;
+
+/// No bound but those of the axes.
+constexpr Dynamics kFree{core::Velocity{}, core::Acceleration{planner::unlimited},
+                         core::Acceleration{planner::unlimited}, core::Jerk{planner::unlimited}};
+
 std::uint64_t stepsFor(core::Seconds duration, double cycle) noexcept {
     const double cycles = duration.count() / cycle;
     return static_cast<std::uint64_t>(std::ceil(std::max(0.0, cycles - kStepTolerance)));
@@ -86,50 +94,53 @@ planner::Limits GroupMotion::brakeLimits(std::size_t axis, const Dynamics& dynam
 void GroupMotion::brake(const Dynamics& dynamics, bool byAxes) noexcept {
     if (resting()) return;
     if (course_ == Course::Path || course_ == Course::BrakePath) {
-        std::array<planner::PathAxisLimits, MaxGroupAxes> limits{};
-        for (std::size_t i = 0; i < axes_; ++i) {
-            const planner::Limits l = brakeLimits(
-                i, {{}, {}, core::Acceleration{planner::unlimited}, core::Jerk{planner::unlimited}},
-                byAxes);
-            limits[i] = {l.maxVelocity, l.maxAcceleration, l.jerk};
-        }
-        planner::PathFeed feed;
-        feed.deceleration = dynamics.deceleration;
-        feed.jerk = dynamics.jerk;
-        if (course_ == Course::Path) {
-            brake_.start(*path_, index_, {limits.data(), axes_}, feed);
-        } else {
-            brake_.tighten({limits.data(), axes_}, feed);
-        }
-        course_ = Course::BrakePath;
-        return;
+        brakeOnPath(dynamics, byAxes);
+    } else {
+        brakeDirect(dynamics, byAxes);
     }
-    // Off a path there is nothing to stay on: each axis as fast as it may.
+}
+
+void GroupMotion::brakeOnPath(const Dynamics& dynamics, bool byAxes) noexcept {
+    std::array<planner::PathAxisLimits, MaxGroupAxes> limits{};
+    for (std::size_t i = 0; i < axes_; ++i) {
+        const planner::Limits l = brakeLimits(i, kFree, byAxes);
+        limits[i] = {l.maxVelocity, l.maxAcceleration * kBrakeShare, l.jerk * kBrakeShare};
+    }
+    planner::PathFeed feed;
+    feed.deceleration = dynamics.deceleration * kBrakeShare;
+    feed.jerk = dynamics.jerk * kBrakeShare;
+    if (course_ == Course::Path) {
+        brake_.start(*path_, index_, {limits.data(), axes_}, feed);
+    } else {
+        brake_.setLimits({limits.data(), axes_}, feed);
+    }
+    course_ = Course::BrakePath;
+}
+
+/// Off a path there is nothing to stay on: each axis as fast as it may.
+void GroupMotion::brakeDirect(const Dynamics& dynamics, bool byAxes) noexcept {
     steps_ = 0;
     for (std::size_t i = 0; i < axes_; ++i) {
-        auto stop = planner::planStop(states_[i], brakeLimits(i, dynamics, byAxes));
-        const auto outside = [this, i](const planner::Profile& profile) {
-            const LimitParams& l = members_[i]->limits;
-            const planner::PositionExtremes extremes = planner::extremesOf(profile);
-            return (l.softPositive && extremes.highest > *l.softPositive) ||
-                   (l.softNegative && extremes.lowest < *l.softNegative);
-        };
-        // A stop too gentle for a software limit is made as hard as the axis may.
-        if (!stop.ok() || outside(stop.value())) {
-            const auto hard =
-                planner::planStop(states_[i], brakeLimits(i,
-                                                          {{},
-                                                           {},
-                                                           core::Acceleration{planner::unlimited},
-                                                           core::Jerk{planner::unlimited}},
-                                                          true));
-            if (hard.ok()) stop = hard;
-        }
-        stops_[i] = stop.ok() ? stop.value() : planner::Profile::holding(states_[i]);
+        stops_[i] = stopOf(i, dynamics, byAxes);
         steps_ = std::max(steps_, stepsFor(stops_[i].duration(), cycle_));
     }
     index_ = 0;
     course_ = Course::BrakeDirect;
+}
+
+planner::Profile GroupMotion::stopOf(std::size_t axis, const Dynamics& dynamics,
+                                     bool byAxes) const noexcept {
+    const LimitParams& l = members_[axis]->limits;
+    const auto inside = [&l](const planner::Profile& profile) {
+        const planner::PositionExtremes extremes = planner::extremesOf(profile);
+        return (!l.softPositive || extremes.highest <= *l.softPositive) &&
+               (!l.softNegative || extremes.lowest >= *l.softNegative);
+    };
+    const auto stop = planner::planStop(states_[axis], brakeLimits(axis, dynamics, byAxes));
+    if (stop.ok() && inside(stop.value())) return stop.value();
+    // A stop too gentle for a software limit is made as hard as the axis may.
+    const auto hard = planner::planStop(states_[axis], brakeLimits(axis, kFree, true));
+    return hard.ok() ? hard.value() : planner::Profile::holding(states_[axis]);
 }
 
 void GroupMotion::step() noexcept {

@@ -43,4 +43,24 @@ core::Result<CommandId, ErrorId> GroupPort::submit(const GroupCommand& request) 
     return command.id;
 }
 
+core::Result<GroupPort::Ids, ErrorId> GroupPort::submit(
+    std::span<const GroupCommand> requests) noexcept {
+    const GroupView view = view_;
+    const CommandBook book = book_;
+    const std::size_t waiting = commands_.size();
+    Ids ids{CommandId::None, CommandId::None};
+    for (const GroupCommand& request : requests) {
+        const auto accepted = submit(request);
+        if (!accepted.ok()) {
+            view_ = view;
+            book_ = book;
+            commands_.truncate(waiting);
+            return accepted.error();
+        }
+        if (ids.first == CommandId::None) ids.first = accepted.value();
+        ids.last = accepted.value();
+    }
+    return ids;
+}
+
 }  // namespace takt::axis

@@ -32,14 +32,7 @@ CommandPhase CommandBlock<Ref, Command>::show(bool edge) noexcept {
 }
 
 template <typename Ref, typename Command>
-void CommandBlock<Ref, Command>::start(const Ref& ref, const Command& request) noexcept {
-    if (!ref.valid()) {
-        status_ = {CommandPhase::Error, ErrorId::NullReference};
-        return;
-    }
-    Command command = request;
-    command.replaces = id_;
-    const auto accepted = ref.port().submit(command);
+void CommandBlock<Ref, Command>::accept(const Ref& ref, const Accepted& accepted) noexcept {
     if (!accepted.ok()) {
         status_ = {CommandPhase::Error, accepted.error()};
         return;

@@ -72,7 +72,7 @@ TEST_F(OnACircle, AHaltMayBeAbortedByAnotherMotion) {
     const auto line = rig.send(lineTo({0.0, 0.0, 0.0}));
     rig.cycle();
     EXPECT_EQ(rig.phase(halt), CommandPhase::Aborted);
-    ASSERT_TRUE(untilOnCircle([&] { return rig.phase(line) == CommandPhase::Active; }));
+    ASSERT_TRUE(untilOnCircle([&] { return atRest(); }));
     ASSERT_TRUE(rig.until([&] { return rig.phase(line) == CommandPhase::Done; }));
     EXPECT_EQ(rig.set(), (GroupPoint{0.0, 0.0, 0.0}));
 }

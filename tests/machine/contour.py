@@ -12,10 +12,10 @@ The path file says what was programmed, one word and its numbers in a line:
   arc 15 5 0 to 20 10 0    through a point to a point
   repeat 4 … end    the lines between so many times
 
-Judged are the rows from the first in which the group moves to the one in which it is in GroupStandby
-or GroupDisabled again:
-- every set position is on the path; only where two elements meet that may be cut, within half of the
-  shorter one and ten times the deviation, it may be off by as much as the deviation
+Judged are the rows from the first in which the group moves on a path to the one in which it is in GroupStandby
+or GroupDisabled again, or has rested on its path for a while:
+- every set position is on the path; only where two elements meet that may be cut, it may be off by as
+  much as the deviation, at most half of the shorter one away, and the nearer the sharper the corner
 - every joint is passed in its order, within its deviation
 - differences of every axis are within its velocity, acceleration and jerk, those of the length G.s
   within the group's, and the length is that of the path travelled
@@ -37,6 +37,7 @@ RELATIVE, ULPS = 1e-6, 4
 ON_PATH = 1e-6          # mm: how far beside the path a set position may be
 CORNER_SLACK = 0.01     # of the deviation: between two cycles the contour is nearer than its chord
 LENGTH_SLACK = 0.03     # of a step: a chord is shorter than its arc
+REST = 50               # cycles without motion that end a path
 MAX_SHOWN = 40
 ENDED = ("GroupStandby", "GroupDisabled")
 
@@ -61,6 +62,9 @@ class Line:
     def __init__(self, start, end):
         self.start, self.end = start, end
         self.length = norm(sub(end, start))
+
+    def direction(self, length):
+        return [(e - s) / self.length for s, e in zip(self.start, self.end)]
 
     def nearest(self, point):
         """(distance, length from the start) of the nearest point of the line"""
@@ -94,6 +98,10 @@ class Arc:
     def _angle(self, point):
         radial = sub(point, self.centre)
         return math.atan2(dot(radial, self.w), dot(radial, self.u)) % (2 * math.pi)
+
+    def direction(self, length):
+        angle = length / self.radius
+        return [math.cos(angle) * w - math.sin(angle) * u for u, w in zip(self.u, self.w)]
 
     def nearest(self, point):
         angle = self._angle(point)
@@ -147,8 +155,11 @@ class Path:
 
     def reach(self, joint):
         """How far from a joint its contour may be."""
-        half = min(self.elements[joint].length, self.elements[joint + 1].length) / 2
-        return min(half, 10 * self.corners[joint])
+        before, after = self.elements[joint], self.elements[joint + 1]
+        half = min(before.length, after.length) / 2
+        turn = norm(sub(after.direction(0.0), before.direction(before.length)))
+        # Where the direction goes on, a small deviation lasts long.
+        return half if turn < 0.1 else min(half, 10 * self.corners[joint] / turn)
 
 
 class Trace:
@@ -168,12 +179,18 @@ class Trace:
 
     def stretch(self):
         """Rows from the last at rest before the group moves to the first at rest behind."""
+        # A direct motion is on no path.
         moving = [i for i, state in enumerate(self.state) if state == "GroupMoving"]
-        if not moving:
-            raise machine_file.MachineError("the group never moves")
-        end = next((i for i in range(moving[0], len(self.state)) if self.state[i] in ENDED),
-                   len(self.state))
-        return max(0, moving[0] - 1), end
+        onway = next((i for i in moving if self.s[i] != self.s[i - 1]), None)
+        if onway is None:
+            raise machine_file.MachineError("the group never moves on a path")
+        begin, rested = onway - 1, 0
+        for row in range(onway, len(self.state)):
+            gone = self.s[row] != self.s[begin]
+            rested = rested + 1 if gone and self.s[row] == self.s[row - 1] else 0
+            if self.state[row] in ENDED or rested > REST:
+                return begin, row
+        return begin, len(self.state)
 
     def cut(self, begin, end):
         part = copy.copy(self)

@@ -27,8 +27,12 @@ namespace {
 Transition randomTransition(Random& random) {
     Transition t;
     switch (random.integer(0, 4)) {
-        case 0: t.mode = TransitionMode::Stop; break;
-        case 1: t.mode = TransitionMode::Exact; break;
+        case 0:
+            t.mode = TransitionMode::Stop;
+            break;
+        case 1:
+            t.mode = TransitionMode::Exact;
+            break;
         case 2:
             t.mode = TransitionMode::CornerDistance;
             t.size = core::Distance{random.logarithmic(0.01, 20.0)};
@@ -62,8 +66,7 @@ PathElementResult randomElement(Random& random, const PathSpace& space, const Pa
     }
     if (space.cartesian < 2 || random.chance(0.6)) return line(space, from, to);
     PathPoint through = from;
-    for (std::size_t i = 0; i < space.cartesian; ++i)
-        through[i] = from[i] + core::Distance{away()};
+    for (std::size_t i = 0; i < space.cartesian; ++i) through[i] = from[i] + core::Distance{away()};
     return arcByBorder(space, from, through, to);
 }
 
@@ -88,8 +91,7 @@ std::vector<PathElement> randomChain(Random& random, const PathSpace& space, Pat
 PathCase randomPath(Random& random, int elements) {
     PathCase c;
     c.space.axes = static_cast<std::size_t>(random.integer(2, 5));
-    c.space.cartesian =
-        std::min(c.space.axes, static_cast<std::size_t>(random.integer(1, 3)));
+    c.space.cartesian = std::min(c.space.axes, static_cast<std::size_t>(random.integer(1, 3)));
     for (std::size_t i = 0; i < c.space.axes; ++i) {
         const double v = random.logarithmic(20.0, 500.0);
         const double a = v * random.logarithmic(3.0, 40.0);
@@ -151,15 +153,17 @@ Use useOf(const Trace& trace, std::span<const PathAxisLimits> limits, double cyc
             const auto at = [&](std::size_t n) {
                 return static_cast<long double>(trace.rows[k + n][i]);
             };
-            // Positions are doubles: a difference knows no better than this.
+            // Positions and places are doubles: a difference knows no better than this.
             const long double noise =
-                std::numeric_limits<double>::epsilon() * std::fabs(at(0)) + 1e-15L;
+                std::numeric_limits<double>::epsilon() *
+                    (std::fabs(at(0)) + std::fabs(static_cast<long double>(trace.s[k]))) +
+                1e-15L;
             const auto size = [&](long double x, int terms) {
                 return std::max(0.0L, std::fabs(x) - static_cast<long double>(terms) * noise);
             };
             raise(use.velocity, size(at(1) - at(0), 4) / (h * limits[i].velocity.count()));
-            raise(use.acceleration, size(at(2) - 2 * at(1) + at(0), 16) /
-                                        (h * h * limits[i].acceleration.count()));
+            raise(use.acceleration,
+                  size(at(2) - 2 * at(1) + at(0), 16) / (h * h * limits[i].acceleration.count()));
             raise(use.jerk, size(at(3) - 3 * at(2) + 3 * at(1) - at(0), 32) /
                                 (h * h * h * limits[i].jerk.count()));
         }

@@ -125,8 +125,13 @@ public:
     }
 
     [[nodiscard]] double closest() const noexcept;
+    /// The farthest that it is beside both elements.
+    [[nodiscard]] double stray(const PathElement& before, const PathElement& after) const noexcept;
 
 private:
+    [[nodiscard]] double beside(const PathElement& element, const PathPoint& corner,
+                                double u) const noexcept;
+
     std::size_t first_;
     std::size_t last_;
     std::array<Coefficients, maxPathAxes> curve_{};
@@ -151,6 +156,42 @@ double Curve::closest() const noexcept {
         }
     }
     return distance(0.5 * (low + high));
+}
+
+/// Distance of the point at u from the line, or from the circle of the arc.
+double Curve::beside(const PathElement& element, const PathPoint& corner, double u) const noexcept {
+    const bool line = element.kind == ElementKind::Line;
+    std::array<double, maxPathAxes> away{};
+    double along = 0.0;
+    double across = 0.0;
+    for (std::size_t i = first_; i < last_; ++i) {
+        const double origin = line ? element.to[i].count() : element.centre[i];
+        away[i] = corner[i].count() + taylor(curve_[i], u).f - origin;
+        along += away[i] * (line ? element.slope[i] : element.u[i]);
+        if (!line) across += away[i] * element.w[i];
+    }
+    double rest = 0.0;
+    double rise = 0.0;
+    for (std::size_t i = first_; i < last_; ++i) {
+        const double d = line ? away[i] - along * element.slope[i]
+                              : away[i] - along * element.u[i] - across * element.w[i];
+        rest += d * d;
+        if (!line) rise += element.slope[i] * element.slope[i];
+    }
+    if (line) return std::sqrt(rest);
+    const double ring = std::sqrt(along * along + across * across) - element.radius;
+    // A helix leaves the plane of its circle anyway.
+    return std::sqrt(ring * ring + (rise > 0.0 ? 0.0 : rest));
+}
+
+double Curve::stray(const PathElement& before, const PathElement& after) const noexcept {
+    constexpr int kSamples = 64;
+    double most = 0.0;
+    for (int k = 1; k < kSamples; ++k) {
+        const double u = k / static_cast<double>(kSamples);
+        most = std::max(most, std::min(beside(before, before.to, u), beside(after, before.to, u)));
+    }
+    return most;
 }
 
 constexpr std::size_t kMeasures = 128;
@@ -231,7 +272,8 @@ void PathBlend::evaluate(double s, PathDerivatives& out) const noexcept {
 }
 
 double deviationOf(const PathElement& before, const PathElement& after, double reach) noexcept {
-    return Curve{before, after, reach}.closest();
+    const Curve curve{before, after, reach};
+    return std::max(curve.closest(), curve.stray(before, after));
 }
 
 double reachForDeviation(const PathElement& before, const PathElement& after, double deviation,

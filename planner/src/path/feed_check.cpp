@@ -10,7 +10,9 @@ namespace takt::planner::detail {
 namespace {
 
 /// Of a piece of feed that lasts longer, so many differences are looked at, evenly spread.
-constexpr std::uint64_t kMostPerPiece = 64;
+constexpr std::int64_t kMostPerPiece = 64;
+/// What the greatest may be missed by then, where the path bends.
+constexpr double kMissed = 1e-4;
 
 /// Four positions in consecutive cycles.
 struct Window {
@@ -24,8 +26,8 @@ public:
     Judge(const PathGeometry& geometry, const FeedProfile& feed, const LimitSet& limits)
         : geometry_{geometry}, feed_{feed}, limits_{limits} {}
 
-    /// Cycles first..first+3, counted from `origin` so that there is one before the first.
-    void look(std::int64_t first) {
+    /// Cycles first..first+3.
+    void look(std::int64_t first, double margin) {
         const std::int64_t keep = filled_ ? std::clamp<std::int64_t>(4 - (first - at_), 0, 4) : 0;
         const auto kept = static_cast<std::size_t>(keep);
         for (std::size_t i = 0; i < kept; ++i) {
@@ -36,6 +38,7 @@ public:
         for (std::size_t i = kept; i < 4; ++i) sample(i, first + static_cast<std::int64_t>(i));
         at_ = first;
         filled_ = true;
+        margin_ = margin;
         compare();
     }
 
@@ -69,15 +72,17 @@ private:
 
     void take(const std::array<double, 4>& q, double v, double up, double down, double j) {
         const double h = limits_.cycle;
-        const double noise = 4.0 * std::numeric_limits<double>::epsilon() * std::fabs(q[0]);
+        const double size = std::max(std::fabs(q[0]), std::fabs(window_.s[0]));
+        const double noise = 4.0 * std::numeric_limits<double>::epsilon() * size;
         const double q1 = std::fabs(q[1] - q[0]) - noise;
         const double q2 = q[2] - 2.0 * q[1] + q[0];
         const double q3 = std::fabs(q[3] - 3.0 * (q[2] - q[1]) - q[0]) - 8.0 * noise;
         const double a = (std::fabs(q2) - 4.0 * noise) / (h * h * (q2 > 0.0 ? up : down));
-        stretch_ = std::max(stretch_, q1 / (h * v));
-        if (a > 0.0) stretch_ = std::max(stretch_, std::sqrt(a));
+        double most = q1 / (h * v);
+        if (a > 0.0) most = std::max(most, std::sqrt(a));
         const double jerk = q3 / (h * h * h * j);
-        if (jerk > 0.0) stretch_ = std::max(stretch_, core::cubeRoot(jerk));
+        if (jerk > 0.0) most = std::max(most, core::cubeRoot(jerk));
+        stretch_ = std::max(stretch_, most * margin_);
     }
 
     const PathGeometry& geometry_;
@@ -86,6 +91,7 @@ private:
     Window window_{};
     std::int64_t at_{0};
     bool filled_{false};
+    double margin_{1.0};
     double stretch_{0.0};
 };
 
@@ -101,9 +107,10 @@ double stretchNeeded(const PathGeometry& geometry, const FeedProfile& feed, std:
         auto first = static_cast<std::int64_t>(std::ceil(feed[i].start / h));
         if (i == firstPiece && feed[i].from.s1 == 0.0) first -= 3;
         const auto last = static_cast<std::int64_t>(end / h);
-        const std::int64_t step =
-            std::max<std::int64_t>(1, (last - first) / static_cast<std::int64_t>(kMostPerPiece));
-        for (std::int64_t k = first; k <= last; k += step) judge.look(k);
+        const std::int64_t step = std::max<std::int64_t>(1, (last - first) / kMostPerPiece);
+        const bool exact = step == 1 || feed[i].constantJerk;
+        for (std::int64_t k = first; k <= last; k += step)
+            judge.look(k, exact ? 1.0 : 1.0 + kMissed);
     }
     return judge.stretch();
 }

@@ -128,7 +128,9 @@ double mostAt(const PathGeometry& geometry, const Span& span, double s) noexcept
     if (!geometry.piece(span.piece).isBlend()) return span.cell;
     PathDerivatives at;
     geometry.evaluate(span.piece, s, at);
-    const double turn = greatestNorm(at.d2, geometry.space().axes) / kBlendTurn;
+    // Axes that do not measure the length may have steep derivatives throughout.
+    const std::size_t axes = geometry.space().axes;
+    const double turn = greatestNorm(at.d2, axes) / greatestNorm(at.d1, axes) / kBlendTurn;
     return 1.0 / (kBlendCells / geometry.piece(span.piece).length + turn);
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <takt/planner/path_brake.hpp>
 
 namespace takt::planner {
@@ -7,145 +8,169 @@ namespace takt::planner {
 namespace {
 
 /// Steps of the look ahead, and their number for a recovery at the present pace.
-constexpr int kMostLookAhead = 32;
-constexpr double kLookAheadSteps = 12.0;
+constexpr int kMostLookAhead = 48;
+constexpr double kLookAheadSteps = 24.0;
 
 /// Of a jerk limit, what may be spent on stopping at once.
 constexpr double kLastShare = 0.2;
 
-/// Velocity, acceleration and jerk that a plan has in one direction, and the limits there.
+/// One of the axes, or the path itself: its derivatives and its limits.
 struct Direction {
-    double v;
-    double a;
-    double j;
-    double down;  ///< acceleration, as magnitudes
+    double d1;
+    double d2;
+    double d3;
+    double down;  ///< accelerations, as magnitudes
     double up;
     double jerk;
 };
 
-/// Calls `f` for every axis and for the path at a moment of the plan.
+/// Calls `f` for every axis and for the path, where the plan is `p`. Where the plan itself uses
+/// more than a limit, the limit gives way.
 template <typename F>
-void forEachDirection(const PathMotion& motion, std::span<const PathAxisLimits> limits,
-                      const PathFeed& path, double time, F&& f) noexcept {
-    const FeedState p = motion.feed.atTime(time);
+void forEachDirection(const PathGeometry& geometry, std::span<const PathAxisLimits> limits,
+                      const PathFeed& path, const FeedState& p, F&& f) noexcept {
     PathDerivatives at;
-    motion.geometry.evaluate(p.s, at);
-    // Where the plan itself uses more, the limit gives way: as planned is always allowed.
-    const auto call = [&](double v, double a, double j, double down, double up, double jerk) {
-        f(Direction{v, a, j, std::max(down, -a), std::max(up, a), std::max(jerk, std::fabs(j))});
-    };
+    geometry.evaluate(p.s, at);
+    const double v2 = p.s1 * p.s1;
     for (std::size_t i = 0; i < limits.size(); ++i) {
-        const double a = limits[i].acceleration.count();
-        call(at.d1[i] * p.s1, at.d1[i] * p.s2 + at.d2[i] * p.s1 * p.s1,
-             at.d1[i] * p.s3 + 3.0 * at.d2[i] * p.s1 * p.s2 + at.d3[i] * p.s1 * p.s1 * p.s1, a, a,
-             limits[i].jerk.count());
+        const double a = at.d1[i] * p.s2 + at.d2[i] * v2;
+        const double j = at.d1[i] * p.s3 + 3.0 * at.d2[i] * p.s1 * p.s2 + at.d3[i] * v2 * p.s1;
+        const double limit = limits[i].acceleration.count();
+        f(Direction{at.d1[i], at.d2[i], at.d3[i], std::max(limit, -a), std::max(limit, a),
+                    std::max(limits[i].jerk.count(), std::fabs(j))});
     }
-    call(p.s1, p.s2, p.s3, path.deceleration.count(), unlimited, path.jerk.count());
+    f(Direction{1.0, 0.0, 0.0, std::max(path.deceleration.count(), -p.s2), unlimited,
+                std::max(path.jerk.count(), std::fabs(p.s3))});
 }
 
-/// Narrows a range to that of x with low <= offset + slope x <= high.
+/// Narrows a range to that of x with -low <= offset + slope x <= high.
 template <typename Range>
 void narrow(Range& range, double offset, double slope, double low, double high) noexcept {
     // What hardly depends on x cannot be helped by it.
     if (!(std::fabs(slope) > 1e-9)) return;
-    const double a = (low - offset) / slope;
+    const double a = (-low - offset) / slope;
     const double b = (high - offset) / slope;
     range.low = std::max(range.low, std::min(a, b));
     range.high = std::min(range.high, std::max(a, b));
 }
 
-template <typename Clock>
-Clock advanced(const Clock& c, double rate2, double dt) noexcept {
-    return {c.time + dt * (c.rate + dt * (0.5 * c.rate1 + dt * rate2 / 6.0)),
-            c.rate + dt * (c.rate1 + 0.5 * dt * rate2), c.rate1 + dt * rate2};
-}
-
 }  // namespace
 
-/// With the clock at rate r the velocities of the plan become r v, the accelerations r^2 a + r' v,
-/// the jerks r^3 j + 3 r r' a + r'' v.
-PathBrake::Room PathBrake::roomAt(const Clock& clock) const noexcept {
-    Room room{{-unlimited, unlimited}, {-unlimited, unlimited}};
-    const double r = clock.rate;
-    forEachDirection(*motion_, {limits_.data(), axes_}, path_, clock.time,
-                     [&](const Direction& d) {
-                         narrow(room.rate1, r * r * d.a, d.v, -d.down, d.up);
-                         narrow(room.rate2, r * r * r * d.j + 3.0 * r * clock.rate1 * d.a, d.v,
-                                -d.jerk, d.jerk);
-                     });
+PathBrake::Place PathBrake::advanced(const Place& place, double jerk, double time) const noexcept {
+    const FeedState& f = place.feed;
+    Place out{{f.s + time * (f.s1 + time * (0.5 * f.s2 + time * jerk / 6.0)),
+               f.s1 + time * (f.s2 + 0.5 * time * jerk), f.s2 + time * jerk, jerk},
+              place.planTime};
+    // The plan is here a little later than it was there; it is faster than the brake.
+    const FeedState before = motion_->feed.atTime(place.planTime);
+    if (before.s1 > 0.0) out.planTime += time * std::clamp(f.s1 / before.s1, 0.0, 1.0);
+    for (int i = 0; i < 3; ++i) {
+        out.planTime = std::min(out.planTime, restTime_);
+        const FeedState p = motion_->feed.atTime(out.planTime);
+        if (!(p.s1 > 0.0)) break;
+        out.planTime += (out.feed.s - p.s) / p.s1;
+    }
+    out.planTime = std::clamp(out.planTime, place.planTime, restTime_);
+    return out;
+}
+
+PathBrake::Room PathBrake::roomAt(const Place& place) const noexcept {
+    const FeedState p = motion_->feed.atTime(place.planTime);
+    const double v = place.feed.s1;
+    const double a = place.feed.s2;
+    Room room{};
+    bool bends = false;
+    forEachDirection(motion_->geometry, {limits_.data(), axes_}, path_, p, [&](const Direction& d) {
+        bends = bends || d.d2 != 0.0 || d.d3 != 0.0;
+        narrow(room.acceleration, d.d2 * v * v, d.d1, d.down, d.up);
+        narrow(room.jerk, 3.0 * d.d2 * v * a + d.d3 * v * v * v, d.d1, d.jerk, d.jerk);
+    });
+    const double rate = p.s1 > 0.0 ? std::min(1.0, v / p.s1) : 1.0;
+    room.followed = rate * rate * p.s2;
+    room.safe = bends ? room.followed : std::min(0.0, room.followed);
     return room;
 }
 
-/// What the second derivative of the clock may be in this cycle.
+/// What the jerk along the path may be in this cycle.
 PathBrake::Range PathBrake::rangeNow() const noexcept {
     const double h = motion_->feed.cycle();
-    Range range = roomAt(clock_).rate2;
-    const Room next = roomAt(advanced(clock_, 0.0, h));
-    range.low = std::max({range.low, next.rate2.low, (next.rate1.low - clock_.rate1) / h});
-    range.high = std::min({range.high, next.rate2.high, (next.rate1.high - clock_.rate1) / h});
+    Range range = roomAt(place_).jerk;
+    const Room next = roomAt(advanced(place_, 0.0, h));
+    range.low = std::max({range.low, next.jerk.low, (next.acceleration.low - place_.feed.s2) / h});
+    range.high =
+        std::min({range.high, next.jerk.high, (next.acceleration.high - place_.feed.s2) / h});
     if (range.low > range.high) range.low = range.high = 0.5 * (range.low + range.high);
     return range;
 }
 
-/// Whether the rate can be made constant from here within all limits and before it is zero. After
-/// that it may stay constant for good: the plan, slower, keeps all limits.
-bool PathBrake::recovers(Clock clock) const noexcept {
-    const double h = motion_->feed.cycle();
+/// Whether the deceleration can be taken back to that of the plan, made evenly slower, or to none
+/// on a straight line, within all limits and before the feed turns round.
+bool PathBrake::recovers(Place place) const noexcept {
     double dt = 0.0;
     for (int i = 0; i < kMostLookAhead; ++i) {
-        if (clock.rate1 >= 0.0) return clock.rate >= 0.0;
-        const Room room = roomAt(clock);
-        const double slack = 1e-9 * std::fabs(clock.rate1);
-        if (clock.rate1 < room.rate1.low - slack) return false;
-        if (!(room.rate2.high > 0.0) || room.rate2.low > room.rate2.high) return false;
-        if (i == 0) dt = std::max(h, -clock.rate1 / room.rate2.high / kLookAheadSteps);
-        clock = advanced(clock, std::min(room.rate2.high, -clock.rate1 / dt), dt);
-        if (clock.rate < 0.0) return false;
-        if (clock.time >= restTime_) return true;
+        if (place.feed.s1 < 0.0) return false;
+        if (place.planTime >= restTime_) return false;
+        const Room room = roomAt(place);
+        const double missing = room.safe - place.feed.s2;
+        if (missing <= 1e-9) return true;
+        if (place.feed.s2 < room.acceleration.low - 1e-9) return false;
+        if (!(room.jerk.high > 0.0) || room.jerk.low > room.jerk.high) return false;
+        if (i == 0)
+            dt = std::max(motion_->feed.cycle(), missing / room.jerk.high / kLookAheadSteps);
+        const double needed = missing / room.jerk.high;
+        place = advanced(place, room.jerk.high, std::min(dt, needed));
     }
     return false;
 }
 
-double PathBrake::choose(const Range& range) noexcept {
+std::optional<double> PathBrake::choose(const Range& range) noexcept {
     const double h = motion_->feed.cycle();
-    // The constant value with which rate and derivative become zero together.
-    const double land = clock_.rate1 < 0.0 ? 0.5 * clock_.rate1 * clock_.rate1 / clock_.rate : 0.0;
-    if (landing_ && land >= 0.5 * range.high) {
-        const double up = std::min(land, range.high);
-        return recovers(advanced(clock_, up, h)) ? up : range.high;
-    }
-    landing_ = false;
+    const double v = place_.feed.s1;
+    const double a = place_.feed.s2;
+    // The constant jerk with which velocity and acceleration become zero together.
+    const double land = a < 0.0 && v > 0.0 ? 0.5 * a * a / v : 0.0;
+    const double landing = std::min(land, range.high);
+    landing_ = landing_ && land >= 0.5 * range.high && recovers(advanced(place_, landing, h));
+    if (landing_) return landing;
     if (range.low < 0.0) {
         for (const double part : {1.0, 0.5, 0.25, 0.1}) {
-            if (recovers(advanced(clock_, part * range.low, h))) return part * range.low;
+            if (recovers(advanced(place_, part * range.low, h))) return part * range.low;
         }
     }
-    if (range.low <= 0.0 && range.high >= 0.0 && recovers(advanced(clock_, 0.0, h))) return 0.0;
-    landing_ = true;
-    return std::clamp(land, range.low, range.high);
+    if (range.low <= 0.0 && range.high >= 0.0 && recovers(advanced(place_, 0.0, h))) return 0.0;
+    landing_ = land >= 0.5 * range.high && recovers(advanced(place_, landing, h));
+    if (landing_) return landing;
+    return std::nullopt;
 }
 
 /// What is left of the motion is so little that it may end between two cycles.
 bool PathBrake::mayStopHere() const noexcept {
     const double h = motion_->feed.cycle();
+    const double v = place_.feed.s1;
+    const FeedState p = motion_->feed.atTime(place_.planTime);
     bool may = true;
-    forEachDirection(*motion_, {limits_.data(), axes_}, path_, clock_.time,
-                     [&](const Direction& d) {
-                         const double v = std::fabs(clock_.rate * d.v);
-                         const double a =
-                             std::fabs(clock_.rate * clock_.rate * d.a + clock_.rate1 * d.v);
-                         may = may && v + a * h <= kLastShare * d.jerk * h * h;
-                     });
+    forEachDirection(motion_->geometry, {limits_.data(), axes_}, path_, p, [&](const Direction& d) {
+        const double a = std::fabs(d.d1 * place_.feed.s2 + d.d2 * v * v);
+        may = may && std::fabs(d.d1) * v + a * h <= kLastShare * d.jerk * h * h;
+    });
     return may;
 }
 
-FeedState PathBrake::stateOf(const Clock& clock) const noexcept {
-    const FeedState p = motion_->feed.atTime(clock.time);
-    return {p.s, clock.rate * p.s1, clock.rate * clock.rate * p.s2 + clock.rate1 * p.s1, 0.0};
+/// One cycle of the plan, evenly slower: the limits are kept whatever comes.
+void PathBrake::follow() noexcept {
+    const FeedState p = motion_->feed.atTime(place_.planTime);
+    const double rate = p.s1 > 0.0 ? std::min(1.0, place_.feed.s1 / p.s1) : 1.0;
+    place_.planTime += rate * motion_->feed.cycle();
+    if (place_.planTime >= restTime_) {
+        rest(restPlace_);
+        return;
+    }
+    const FeedState next = motion_->feed.atTime(place_.planTime);
+    place_.feed = {next.s, rate * next.s1, rate * rate * next.s2, rate * rate * rate * next.s3};
 }
 
-void PathBrake::rest(double time) noexcept {
-    state_ = {motion_->feed.atTime(time).s, 0.0, 0.0, 0.0};
+void PathBrake::rest(double s) noexcept {
+    place_.feed = {s, 0.0, 0.0, 0.0};
     atRest_ = true;
 }
 
@@ -153,11 +178,11 @@ void PathBrake::start(const PathMotion& motion, std::uint64_t cycle,
                       std::span<const PathAxisLimits> limits, const PathFeed& path) noexcept {
     motion_ = &motion;
     setLimits(limits, path);
-    clock_ = {static_cast<double>(cycle) * motion.feed.cycle(), 1.0, 0.0};
-    restTime_ = motion.feed.restAfter(clock_.time);
-    state_ = motion.feed.at(cycle);
+    place_ = {motion.feed.at(cycle), static_cast<double>(cycle) * motion.feed.cycle()};
+    restTime_ = motion.feed.restAfter(place_.planTime);
+    restPlace_ = motion.feed.atTime(restTime_).s;
     landing_ = false;
-    atRest_ = state_.s1 == 0.0 && state_.s2 == 0.0;
+    atRest_ = place_.feed.s1 == 0.0 && place_.feed.s2 == 0.0;
 }
 
 void PathBrake::setLimits(std::span<const PathAxisLimits> limits, const PathFeed& path) noexcept {
@@ -167,28 +192,41 @@ void PathBrake::setLimits(std::span<const PathAxisLimits> limits, const PathFeed
 }
 
 FeedState PathBrake::step() noexcept {
-    if (atRest_) return state_;
+    if (atRest_) return place_.feed;
     const double h = motion_->feed.cycle();
     if (mayStopHere()) {
-        rest(clock_.time);
-        return state_;
+        rest(place_.feed.s);
+        return place_.feed;
     }
-    double rate2 = choose(rangeNow());
-    const double turn = clock_.rate1 < 0.0 && rate2 > 0.0 ? -clock_.rate1 / rate2 : unlimited;
-    const double lowest = clock_.rate + 0.5 * clock_.rate1 * turn;
-    if (turn <= h && lowest <= 1e-9 * clock_.rate) {
-        // On the parabola down to zero within this cycle: a third of rate times the time left.
-        rest(std::min(restTime_, clock_.time + clock_.rate * turn / 3.0));
-        return state_;
+    const Range range = rangeNow();
+    const std::optional<double> braking = choose(range);
+    const Room room = roomAt(place_);
+    const double v = place_.feed.s1;
+    const double a = place_.feed.s2;
+    const bool follows = a >= room.followed - 1e-6 * (1.0 + std::fabs(room.followed));
+    if (!braking && follows) {
+        follow();
+        return place_.feed;
     }
-    if (turn <= h) rate2 = -clock_.rate1 / h;
-    clock_ = advanced(clock_, rate2, h);
-    if (clock_.time >= restTime_ || !(clock_.rate > 0.0)) {
-        rest(std::min(restTime_, clock_.time));
+    double jerk = braking.value_or(room.jerk.high);
+    const double turn = a < 0.0 && jerk > 0.0 ? -a / jerk : unlimited;
+    if (turn <= h && v + 0.5 * a * turn <= 1e-9 * v) {
+        // On the parabola down to zero within this cycle.
+        rest(std::min(restPlace_, place_.feed.s + v * turn / 3.0));
+        return place_.feed;
+    }
+    Place next = advanced(place_, jerk, h);
+    const double followed = roomAt(next).followed;
+    if (next.feed.s2 > followed) {
+        jerk = std::min(jerk, (followed - a) / h);
+        next = advanced(place_, jerk, h);
+    }
+    if (next.feed.s >= restPlace_ || !(next.feed.s1 > 0.0)) {
+        rest(std::min(restPlace_, std::max(next.feed.s, place_.feed.s)));
     } else {
-        state_ = stateOf(clock_);
+        place_ = next;
     }
-    return state_;
+    return place_.feed;
 }
 
 }  // namespace takt::planner

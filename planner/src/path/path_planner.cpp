@@ -15,6 +15,12 @@ namespace {
 /// needs the first only: it can be made slower as a whole.
 constexpr std::array<double, 5> kShares{0.998, 0.99, 0.97, 0.94, 0.9};
 
+/// A feed from rest that would have to become slower than this is planned again.
+constexpr double kMostStretch = 1.5;
+/// Slower feeds meet the cycles elsewhere, so it may take more than one round, with ever more
+/// added.
+constexpr int kMostRounds = 10;
+
 /// What a difference may exceed its limit by: rounding.
 constexpr double kRounding = 1e-9;
 
@@ -107,11 +113,11 @@ bool PathPlanner::Work::tryShare(const detail::Section& section, double share, P
         detail::addPieces(section, grid, solver.coefficients(), out.feed);
     }
     out.feed.restAt(section.to);
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0; round < kMostRounds; ++round) {
         const double stretch = detail::stretchNeeded(out.geometry, out.feed, first, limits(1.0));
         if (stretch <= 1.0 + kRounding) return true;
-        if (!section.fromRest || !(stretch < 2.0)) break;
-        out.feed.stretch(first, stretch * (1.0 + kRounding));
+        if (!section.fromRest || !(stretch < kMostStretch)) break;
+        out.feed.stretch(first, stretch * (1.0 + kRounding * (1 << 2 * round)));
         out.feed.restAt(section.to);
     }
     out.feed.truncate(first);

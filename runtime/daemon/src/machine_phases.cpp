@@ -13,7 +13,7 @@ void MachineRun::oneCycle() noexcept {
     const scheduler::Beat beat = grid_.wait(bus_.clock());
     bus_.beginCycle(beat.number);
     cycle_.run(beat, orders_);
-    planPaths();
+    doJobs();
     now_ = beat.number + 1;
     const core::CycleGuard guard;
     superviseOverruns(beat);
@@ -21,11 +21,19 @@ void MachineRun::oneCycle() noexcept {
 }
 
 /// Jobs: in virtual time between the cycles, on a machine on a thread of their own.
-void MachineRun::planPaths() noexcept {
-    if (planning_) {
-        planning_->wakeIfWanted();
+void MachineRun::doJobs() noexcept {
+    if (!planning_) {
+        planPaths();
+        routes_.work();
         return;
     }
+    bool paths = false;
+    for (axis::Group& group : groups_) paths = group.planner().takeCall() || paths;
+    if (paths) planning_->ring();
+    if (routes_.takeCalls()) routing_->ring();
+}
+
+void MachineRun::planPaths() {
     for (axis::Group& group : groups_) {
         if (group.planner().wanted()) group.planner().work();
     }

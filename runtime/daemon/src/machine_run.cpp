@@ -86,7 +86,8 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
               machine_.network.cycle}},
       pace_{!options.fast && options.interface.empty()},
       notices_{NoticeRoom},
-      reporter_{machine_, programs_, bus_.master(), control_.names(), console} {
+      reporter_{machine_, programs_, bus_.master(), control_.names(), console},
+      routes_{machine_, axes_, programs_} {
     attachAxes(machine_, bus_.master(), axes_);
 }
 
@@ -178,7 +179,11 @@ void MachineRun::runOnThreads() {
     if (!groups_.empty()) {
         // Below the programs, so that a long plan keeps nobody from his cycle.
         planning_ = std::make_unique<PlanningThread>(
-            ThreadPlace{"takt-plan", std::max(params.priority - 2, 0), -1}, groups_, notes);
+            ThreadPlace{"takt-plan", std::max(params.priority - 2, 0), -1}, [this] { planPaths(); },
+            notes);
+        // No motion waits for a way: it may take as long as other processes let it.
+        routing_ = std::make_unique<PlanningThread>(
+            ThreadPlace{"takt-route", 0, -1}, [this] { routes_.work(); }, notes);
     }
     std::atomic<bool> go{false};
     RealtimeThread thread{{"takt-cycle", params.priority, params.cpu},
@@ -200,6 +205,7 @@ void MachineRun::runOnThreads() {
     }
     thread.join();
     planning_.reset();
+    routing_.reset();
     keepHouse(true);
 }
 

@@ -18,6 +18,7 @@
 #include "planning_thread.hpp"
 #include "program_watchdog.hpp"
 #include "realtime_thread.hpp"
+#include "route_office.hpp"
 #include "run_notice.hpp"
 #include "run_reporter.hpp"
 #include "stop_request.hpp"
@@ -54,13 +55,14 @@ private:
     void runOnThreads();
     void keepHouse(bool cycleRests);
     void conclude();
+    void planPaths();
     void tellStatistics();
     [[noreturn]] void leaveHangingProgram(std::size_t program, core::CycleNumber cycle);
 
     // rt, after each cycle.
     void oneCycle() noexcept;
     void supervise() noexcept;
-    void planPaths() noexcept;
+    void doJobs() noexcept;
     void superviseOverruns(const scheduler::Beat& beat) noexcept;
     void superviseGoingOp() noexcept;
     void superviseOperating() noexcept;
@@ -103,8 +105,10 @@ private:
     ExitCode code_{ExitCode::Good};
     bool quickStopped_{false};
     bool stopTimedOut_{false};
-    bool stopNoted_{false};                     ///< the present machine stop has been noted
-    std::unique_ptr<PlanningThread> planning_;  ///< on a machine
+    bool stopNoted_{false};  ///< the present machine stop has been noted
+    RouteOffice routes_;
+    std::unique_ptr<PlanningThread> planning_;  ///< of paths; on a machine with groups
+    std::unique_ptr<PlanningThread> routing_;   ///< of ways around keep-outs, likewise
     std::atomic<bool> over_{false};
 };
 

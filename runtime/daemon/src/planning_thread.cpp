@@ -1,21 +1,19 @@
 #include "planning_thread.hpp"
 
+#include <utility>
+
 namespace takt::daemon {
 
-PlanningThread::PlanningThread(const ThreadPlace& place, Groups& groups, Notes& notes)
-    : groups_{groups}, thread_{place, [this] { serve(); }, notes} {}
+PlanningThread::PlanningThread(const ThreadPlace& place, std::function<void()> work, Notes& notes)
+    : work_{std::move(work)}, thread_{place, [this] { serve(); }, notes} {}
 
 PlanningThread::~PlanningThread() {
     over_.store(true, std::memory_order_release);
-    bell_.fetch_add(1, std::memory_order_release);
-    bell_.notify_one();
+    ring();
     thread_.join();
 }
 
-void PlanningThread::wakeIfWanted() noexcept {
-    bool wanted = false;
-    for (axis::Group& group : groups_) wanted = group.planner().takeCall() || wanted;
-    if (!wanted) return;
+void PlanningThread::ring() noexcept {
     bell_.fetch_add(1, std::memory_order_release);
     bell_.notify_one();
 }
@@ -26,9 +24,7 @@ void PlanningThread::serve() {
         bell_.wait(heard, std::memory_order_acquire);
         heard = bell_.load(std::memory_order_acquire);
         if (over_.load(std::memory_order_acquire)) return;
-        for (axis::Group& group : groups_) {
-            if (group.planner().wanted()) group.planner().work();
-        }
+        work_();
     }
 }
 

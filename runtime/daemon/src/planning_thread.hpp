@@ -2,29 +2,29 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 
-#include "axes.hpp"
 #include "realtime_thread.hpp"
 
 namespace takt::daemon {
 
-/// Plans the paths of all groups on a real clock, below the priority of cycle and programs.
+/// Does jobs on a real clock, below the priority of cycle and programs.
 class PlanningThread {
 public:
-    /// The groups outlive the object.
-    PlanningThread(const ThreadPlace& place, Groups& groups, Notes& notes);
-    /// Ends when the plan at hand is done.
+    /// \param work does all that is asked for when it is called
+    PlanningThread(const ThreadPlace& place, std::function<void()> work, Notes& notes);
+    /// Ends when the work at hand is done.
     ~PlanningThread();
     PlanningThread(const PlanningThread&) = delete;
     PlanningThread& operator=(const PlanningThread&) = delete;
 
-    /// rt. One system call when a group has asked for a plan since the last time, none otherwise.
-    void wakeIfWanted() noexcept;
+    /// rt. Something has been asked for. One system call.
+    void ring() noexcept;
 
 private:
     void serve();
 
-    Groups& groups_;
+    std::function<void()> work_;
     std::atomic<std::uint32_t> bell_{0};  ///< changes with every ring
     std::atomic<bool> over_{false};
     RealtimeThread thread_;

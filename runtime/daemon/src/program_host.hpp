@@ -53,6 +53,10 @@ public:
     /// rt. The program has asked for this axis or a group of it; while it runs nobody else moves
     /// it.
     [[nodiscard]] bool uses(std::size_t axis) const noexcept { return work_->machine().uses(axis); }
+    /// Where the program asks for ways of a group around its keep-outs.
+    [[nodiscard]] axis::RouteDesk& routes(std::size_t group) noexcept {
+        return work_->groupArea(group).routes();
+    }
     /// rt. The machine as the program sees it: to tell it of a machine stop and to hear it ask for
     /// one. \pre atRest()
     [[nodiscard]] program::Machine& machine() noexcept { return work_->machine(); }

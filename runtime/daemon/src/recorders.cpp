@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
 #include <takt/record/motion_trace.hpp>
 #include <takt/record/svg_plot.hpp>
+
+#include "ground_plan.hpp"
 
 namespace takt::daemon {
 
@@ -58,7 +62,7 @@ record::MotionSample sampleOf(const axis::AxisStatus& status) noexcept {
 }  // namespace
 
 Recorders::Recorders(const RunOptions& options, const config::MachineConfig& machine)
-    : cycle_{machine.network.cycle}, plotPath_{options.plot} {
+    : cycle_{machine.network.cycle}, plotPath_{options.plot}, topViewPath_{options.topView} {
     for (const axis::AxisParams& axis : machine.axes) motionAxes_.push_back({axis.name, axis.unit});
     for (const axis::GroupParams& group : machine.groups)
         motionGroups_.push_back({group.name, group.unit});
@@ -78,11 +82,31 @@ Recorders::Recorders(const RunOptions& options, const config::MachineConfig& mac
         plot_ = std::make_unique<record::PlotData>(columns, "t_ns", record::columnsOf(spec));
         sinks_.push_back(plot_.get());
     }
+    if (!topViewPath_.empty()) openTopView(machine, columns);
     if (!sinks_.empty()) trace_ = std::make_unique<record::TraceRecorder>(columns, TraceRows);
     if (!options.capture.empty()) {
         captureFile_ = std::make_unique<record::OutputFile>(options.capture);
         capture_ = std::make_unique<record::PcapngWriter>(*captureFile_, "takt", CaptureBytes);
     }
+}
+
+void Recorders::openTopView(const config::MachineConfig& machine,
+                            const std::vector<record::TraceColumn>& columns) {
+    auto spec = groundPlanOf(machine);
+    if (!spec) {
+        throw std::runtime_error(fmt::format(
+            "{}: there is nothing to be seen from above: a group whose first two axes have soft "
+            "limits is needed",
+            topViewPath_.string()));
+    }
+    record::OutputFile{topViewPath_}.flush();
+    topViewSpec_ = std::move(*spec);
+    constexpr double Fineness = 1e-4;  // of the longer side: far below a pixel
+    const record::TopViewAxis& x = topViewSpec_.x;
+    const record::TopViewAxis& y = topViewSpec_.y;
+    topView_ = std::make_unique<record::TopViewData>(
+        columns, x.name, y.name, Fineness * std::max(x.high - x.low, y.high - y.low));
+    sinks_.push_back(topView_.get());
 }
 
 void Recorders::row(core::CycleNumber cycle, const Movers& movers) noexcept {
@@ -113,6 +137,13 @@ std::vector<std::string> Recorders::finish(const std::string& title, const std::
         file.write(record::drawSvg(record::motionPlot(title, subtitle, motionAxes_, motionGroups_),
                                    *plot_));
         if (!file.flush()) incomplete(plotPath_);
+    }
+    if (topView_) {
+        topViewSpec_.title = title;
+        topViewSpec_.subtitle = subtitle;
+        record::OutputFile file{topViewPath_};
+        file.write(record::drawTopView(topViewSpec_, *topView_));
+        if (!file.flush()) incomplete(topViewPath_);
     }
     return problems;
 }

@@ -24,6 +24,7 @@ enum class ErrorId : std::uint16_t {
     ParameterType = 0x0109,
     NullReference = 0x010A,
     NotFinite = 0x010B,
+    StartOutsideSWLimit = 0x010C,
     // State
     InvalidState = 0x0201,
     NotPowered = 0x0202,
@@ -56,6 +57,11 @@ enum class ErrorId : std::uint16_t {
     MasterCycle = 0x0407,
     CoordSystemNotSupported = 0x0408,
     PlanningLate = 0x0409,
+    RouteNotFound = 0x040A,
+    StartInKeepOut = 0x040B,
+    GoalInKeepOut = 0x040C,
+    NotAtPathStart = 0x040D,
+    ObstaclesMissing = 0x040E,
     // Homing
     HomingTimeout = 0x0501,
     HomingDistance = 0x0502,

@@ -64,6 +64,10 @@ private:
     void stepPath(const planner::FeedState& next) noexcept;
     void stepDirect() noexcept;
     void stepBrakeDirect() noexcept;
+    void brakeOnPath(const Dynamics& dynamics, bool byAxes) noexcept;
+    void brakeDirect(const Dynamics& dynamics, bool byAxes) noexcept;
+    [[nodiscard]] planner::Profile stopOf(std::size_t axis, const Dynamics& dynamics,
+                                          bool byAxes) const noexcept;
     void arrive() noexcept;
     void rest() noexcept;
     [[nodiscard]] planner::Limits brakeLimits(std::size_t axis, const Dynamics& dynamics,

@@ -6,6 +6,7 @@
 #include <takt/axis/command_book.hpp>
 #include <takt/axis/group_command.hpp>
 #include <takt/axis/group_view.hpp>
+#include <takt/axis/route_desk.hpp>
 #include <takt/core/fixed_vector.hpp>
 #include <takt/core/result.hpp>
 
@@ -26,6 +27,16 @@ public:
     /// rt. Judges the request against the view. \return the id to ask for (None for the release of
     /// a stop), or why not; then nothing is changed
     [[nodiscard]] core::Result<CommandId, ErrorId> submit(const GroupCommand& request) noexcept;
+    /// rt. Submits commands that belong together: all of them, or none. \pre !requests.empty()
+    /// \return the ids of the first and the last
+    struct Ids {
+        CommandId first;
+        CommandId last;
+    };
+    [[nodiscard]] core::Result<Ids, ErrorId> submit(
+        std::span<const GroupCommand> requests) noexcept;
+    /// rt. Where ways of this group around its keep-outs are asked for.
+    [[nodiscard]] RouteDesk& routes() noexcept { return routes_; }
     /// rt. Where the command stands.
     [[nodiscard]] CommandStatus status(CommandId id) const noexcept { return book_.status(id); }
 
@@ -53,6 +64,7 @@ private:
     GroupView view_{};
     core::FixedVector<GroupCommand, MaxCommands> commands_{};
     CommandBook book_;
+    RouteDesk routes_;
     std::uint32_t generation_{1};
 };
 

@@ -5,6 +5,7 @@
 #include <takt/axis/group_params.hpp>
 #include <takt/axis/machine_stop_params.hpp>
 #include <takt/fieldbus/fieldbus_params.hpp>
+#include <takt/planner/roadmap/roadmap_params.hpp>
 #include <takt/program/program_params.hpp>
 #include <takt/scheduler/scheduler_params.hpp>
 #include <takt/twin/twin_params.hpp>
@@ -21,6 +22,7 @@ struct MachineConfig {
     scheduler::SchedulerParams scheduler;
     std::vector<axis::AxisParams> axes;
     std::vector<axis::GroupParams> groups;
+    std::vector<planner::roadmap::ObstacleParams> obstacles;  ///< one at most for each group
     std::vector<program::ProgramParams> programs;
     axis::MachineStopParams machineStop;  ///< inputs name slaves and mapped entries that exist
     twin::TwinParams twin;  ///< one device for each slave, defaults where <Twin> is silent

@@ -40,7 +40,8 @@ private:
     std::array<double, kSpans + 1> starts_{};
 };
 
-/// How far from the corner the blend of this reach passes, measured where the length is.
+/// How far from the corner the blend of this reach passes, or how far it is beside both elements
+/// anywhere, if that is more: where they meet in one direction. Measured where the length is.
 [[nodiscard]] double deviationOf(const PathElement& before, const PathElement& after,
                                  double reach) noexcept;
 

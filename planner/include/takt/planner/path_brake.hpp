@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <takt/planner/path_planner.hpp>
 
@@ -9,10 +10,11 @@ namespace takt::planner {
 
 /// Brings a running motion to rest on its path, in the cycle: for halts, stops and faults.
 ///
-/// It slows down the clock of the planned feed, so every position is one of the path, and where it
-/// goes slower than planned, all that curvature asks for becomes less. The planned motion itself
-/// stops at the end of its path and at every stop on the way; the brake is never later than that.
-/// Limits that are tighter than what the plan uses at a place give way to the plan there.
+/// From cycle to cycle it takes the hardest jerk from which it could still go over, within all
+/// limits, to the planned feed made evenly slower. That keeps all limits for good, so there always
+/// is a way on: at worst the planned motion itself, which stops at the end of its path and at every
+/// stop on the way. Limits that are tighter than what the plan uses at a place give way to the plan
+/// there.
 ///
 ///     brake.start(motion, k, stopLimits, pathLimits);
 ///     FeedState next = brake.step();                        // every cycle until isAtRest()
@@ -32,40 +34,42 @@ public:
     FeedState step() noexcept;
 
     [[nodiscard]] bool isAtRest() const noexcept { return atRest_; }
-    [[nodiscard]] const FeedState& state() const noexcept { return state_; }
+    [[nodiscard]] const FeedState& state() const noexcept { return place_.feed; }
 
 private:
-    /// The clock of the plan: its time, its rate and the derivative of that in real time.
-    struct Clock {
-        double time;
-        double rate;
-        double rate1;
+    /// A feed beside the plan, and the time at which the plan is at the same place.
+    struct Place {
+        FeedState feed;
+        double planTime;
     };
     struct Range {
-        double low;
-        double high;
+        double low{-unlimited};
+        double high{unlimited};
     };
-    /// What the clock may do at a moment.
+    /// What the limits allow along the path at a moment.
     struct Room {
-        Range rate1;  ///< by the accelerations
-        Range rate2;  ///< by the jerks
+        Range acceleration;
+        Range jerk;
+        double followed;  ///< acceleration of the plan, made evenly slower
+        double safe;      ///< acceleration from which on nothing has to be taken back
     };
 
-    [[nodiscard]] Room roomAt(const Clock& clock) const noexcept;
+    [[nodiscard]] Place advanced(const Place& place, double jerk, double time) const noexcept;
+    [[nodiscard]] Room roomAt(const Place& place) const noexcept;
     [[nodiscard]] Range rangeNow() const noexcept;
-    [[nodiscard]] bool recovers(Clock clock) const noexcept;
-    [[nodiscard]] double choose(const Range& range) noexcept;
+    [[nodiscard]] bool recovers(Place place) const noexcept;
+    [[nodiscard]] std::optional<double> choose(const Range& range) noexcept;
     [[nodiscard]] bool mayStopHere() const noexcept;
-    [[nodiscard]] FeedState stateOf(const Clock& clock) const noexcept;
-    void rest(double time) noexcept;
+    void follow() noexcept;
+    void rest(double s) noexcept;
 
     const PathMotion* motion_{nullptr};
     std::size_t axes_{0};
     std::array<PathAxisLimits, maxPathAxes> limits_{};
     PathFeed path_{};
-    Clock clock_{};
-    double restTime_{0.0};  ///< of the plan
-    FeedState state_{};
+    Place place_{};
+    double restTime_{0.0};  ///< when the plan comes to rest, and where
+    double restPlace_{0.0};
     bool landing_{false};
     bool atRest_{true};
 };

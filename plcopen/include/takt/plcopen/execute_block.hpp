@@ -31,9 +31,20 @@ protected:
     /// \return where the command stands as this call shows it; Unknown = nothing to show
     template <typename Request>
     axis::CommandPhase run(const Ref& ref, Request&& request) noexcept {
+        return runWith(ref, [&request](auto& port, axis::CommandId previous) noexcept {
+            Command command = request();
+            command.replaces = previous;
+            return port.submit(command);
+        });
+    }
+    /// rt. The same, where `submit(port, previous command of the instance)` submits what a rising
+    /// edge commands and returns the id that is followed.
+    template <typename Submit>
+    axis::CommandPhase runWith(const Ref& ref, Submit&& submit) noexcept {
         const bool edge = Execute && !lastExecute_;
         if (edge) {
-            start(ref, request());
+            accept(ref,
+                   ref.valid() ? submit(ref.port(), id_) : Accepted{axis::ErrorId::NullReference});
         } else if (pending_) {
             follow();
         }
@@ -45,7 +56,9 @@ protected:
     [[nodiscard]] bool wasExecuted() const noexcept { return lastExecute_; }
 
 private:
-    void start(const Ref& ref, const Command& request) noexcept;
+    using Accepted = core::Result<axis::CommandId, axis::ErrorId>;
+
+    void accept(const Ref& ref, const Accepted& accepted) noexcept;
     void follow() noexcept;
     axis::CommandPhase show(bool edge) noexcept;
 
@@ -74,7 +87,10 @@ protected:
     /// rt. As CommandBlock::run, and sets Active and CommandAborted.
     template <typename Request>
     axis::CommandPhase runMotion(const Ref& ref, Request&& request) noexcept {
-        const axis::CommandPhase phase = this->run(ref, request);
+        return showMotion(this->run(ref, request));
+    }
+    /// rt. Sets Active and CommandAborted as the command stands.
+    axis::CommandPhase showMotion(axis::CommandPhase phase) noexcept {
         Active = phase == axis::CommandPhase::Active;
         CommandAborted = phase == axis::CommandPhase::Aborted;
         return phase;

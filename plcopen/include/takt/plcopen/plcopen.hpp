@@ -8,6 +8,7 @@
 #include <takt/plcopen/mc_home.hpp>
 #include <takt/plcopen/mc_jog.hpp>
 #include <takt/plcopen/mc_move.hpp>
+#include <takt/plcopen/mc_path.hpp>
 #include <takt/plcopen/mc_power.hpp>
 #include <takt/plcopen/mc_read.hpp>
 #include <takt/plcopen/mc_stop.hpp>
