@@ -27,6 +27,7 @@ Group::Group(const GroupParams& params, std::vector<Axis*> machineAxes, core::Du
       traits_{params.limits, params.queueDepth},
       machineAxes_{std::move(machineAxes)},
       latency_{params.latencyCycles},
+      lead_{params.latencyCycles},
       cycle_{cycle},
       motion_{cycle},
       planner_{cycle} {
@@ -148,6 +149,7 @@ void Group::enter(GroupState state) noexcept {
     view_.active = CommandId::None;
     view_.stopDone = false;
     view_.stopReleased = true;
+    lead_ = latency_;
     leaveMembers();
     if (state != GroupState::Disabled) return;
     report(std::exchange(disable_, CommandId::None), {CommandPhase::Done, ErrorId::None});

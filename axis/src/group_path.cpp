@@ -63,7 +63,7 @@ void Group::askForPlan() noexcept {
 
     GroupPlanner::Order& order = planner_.order();
     order = {};
-    from_ = motion_.index() + latency_ - 1;
+    from_ = motion_.index() + lead_ - 1;
     // A path that has come to its end by then is not gone on with: the next one begins at rest.
     extends_ = running != nullptr && from_ < running->feed.cycles() ? running : nullptr;
     std::size_t room = GroupPlanner::MaxElements;
@@ -89,7 +89,7 @@ void Group::askForPlan() noexcept {
         entry.planned = true;
     }
     if (order.items.empty()) return;
-    due_ = view_.cycle + latency_;
+    due_ = view_.cycle + lead_;
     asked_ = true;
     planLate_ = false;
     planner_.ask();
@@ -115,6 +115,8 @@ void Group::takePlan() noexcept {
         return;
     }
     if (view_.cycle < due_) return;
+    // On a computer that is too slow for the latency the next plan is given as long twice over.
+    if (planLate_) lead_ = std::min(MostLead, 2 * (view_.cycle - due_ + lead_));
     const bool inTime = extends_ != nullptr ? motion_.path() == extends_ && motion_.index() == from_
                                             : motion_.resting();
     asked_ = false;

@@ -239,7 +239,7 @@ TEST(Group, BlendsACornerThatIsAskedForWhileMoving) {
     GroupRig rig;
     rig.start();
     const auto first = rig.send(lineTo({20.0, 0.0, 0.0}));
-    rig.cycles(40);
+    rig.cycles(100);
     const auto second = rig.send(blended(lineTo({20.0, 20.0, 0.0}), 0.2));
     double nearest = 100.0;
     while (rig.phase(second) != CommandPhase::Done && rig.k < 5000) {
@@ -401,6 +401,27 @@ TEST(Group, StopsAtTheEndOfWhatIsPlannedWhenAPlanIsLateAndGoesOnWhenItComes) {
     rig.plannerSleeps = false;
     ASSERT_TRUE(rig.until([&] { return rig.phase(second) == CommandPhase::Done; }));
     EXPECT_EQ(rig.set(), (GroupPoint{20.0, 20.0, 0.0}));
+    EXPECT_EQ(rig.group.status().latePlans, 1U);
+}
+
+TEST(Group, GivesASlowPlannerMoreTimeUntilItIsInTime) {
+    GroupRig rig;
+    rig.start();
+    const auto first = rig.send(lineTo({100.0, 0.0, 0.0}));
+    rig.cycles(50);
+    rig.plannerSleeps = true;
+    const auto second = rig.send(buffered(lineTo({100.0, 20.0, 0.0})));
+    // It takes 30 cycles for each plan: too long for the first, not for the second.
+    for (int plan = 0; plan < 2; ++plan) {
+        ASSERT_TRUE(rig.until([&] { return rig.group.planner().wanted(); }, 100));
+        rig.cycles(30);
+        rig.group.planner().work();
+    }
+    rig.plannerSleeps = false;
+    rig.cycles(60);
+    EXPECT_EQ(rig.group.status().latePlans, 1U);
+    EXPECT_EQ(rig.phase(first), CommandPhase::Active);
+    ASSERT_TRUE(rig.until([&] { return rig.phase(second) == CommandPhase::Done; }));
     EXPECT_EQ(rig.group.status().latePlans, 1U);
 }
 

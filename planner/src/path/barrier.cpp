@@ -14,7 +14,7 @@ constexpr int kMostSteps = 80;
 /// Of the way to the nearest limit.
 constexpr double kApproach = 0.9;
 /// A use of the limits with which the search for the fastest may begin.
-constexpr double kInside = 0.98;
+constexpr double kInside = 0.99995;
 
 struct Point {
     double x;

@@ -106,6 +106,8 @@ double stretchNeeded(const PathGeometry& geometry, const FeedProfile& feed, std:
         // Windows that begin in this piece, and for a start at rest those that reach into it.
         auto first = static_cast<std::int64_t>(std::ceil(feed[i].start / h));
         if (i == firstPiece && feed[i].from.s1 == 0.0) first -= 3;
+        // What was before a feed that begins in motion is not known here.
+        if (feed[0].from.s1 != 0.0) first = std::max<std::int64_t>(first, 0);
         const auto last = static_cast<std::int64_t>(end / h);
         const std::int64_t step = std::max<std::int64_t>(1, (last - first) / kMostPerPiece);
         const bool exact = step == 1 || feed[i].constantJerk;

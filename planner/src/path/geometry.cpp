@@ -183,7 +183,7 @@ void PathGeometry::evaluate(std::size_t index, double s, PathDerivatives& out) c
     } else {
         const PathElement& element = elements_[piece.element];
         // Where the element is not cut, its end is met exactly.
-        const bool atEnd = way >= piece.length && piece.end != JointKind::Through;
+        const bool atEnd = s >= piece.start + piece.length && piece.end != JointKind::Through;
         planner::evaluate(element, atEnd ? element.length : piece.offset + way, out);
     }
 }

@@ -25,13 +25,13 @@ LineLimits lineLimits(const PathGeometry& geometry, std::size_t piece, const Pat
                       const LimitSet& limits) noexcept {
     const PathFeed feed = geometry.feedOf(piece);
     const double f = limits.share;
-    const double v = feed.velocity.count() * f;
+    const double v = feed.velocity.count() * limits.speedShare;
     LineLimits out{v * v, feed.acceleration.count() * f, feed.deceleration.count() * f,
                    feed.jerk.count() * f};
     for (std::size_t i = 0; i < limits.axes.size(); ++i) {
         const double d = std::fabs(at.d1[i]);
         if (!(d > kNothing)) continue;
-        const double axis = limits.axes[i].velocity.count() * f / d;
+        const double axis = limits.axes[i].velocity.count() * limits.speedShare / d;
         out.x = std::min(out.x, axis * axis);
         const double a = limits.axes[i].acceleration.count() * f / d;
         out.acceleration = std::min(out.acceleration, a);

@@ -11,6 +11,11 @@ namespace {
 constexpr int kMostLookAhead = 48;
 constexpr double kLookAheadSteps = 24.0;
 
+/// With a little less than may be had then, because its steps are coarse.
+constexpr double kLookAheadShare = 0.96;
+/// The direction turns by this angle in a step at most (radians).
+constexpr double kLookAheadTurn = 0.03;
+
 /// Of a jerk limit, what may be spent on stopping at once.
 constexpr double kLastShare = 0.2;
 
@@ -79,15 +84,20 @@ PathBrake::Room PathBrake::roomAt(const Place& place) const noexcept {
     const double v = place.feed.s1;
     const double a = place.feed.s2;
     Room room{};
-    bool bends = false;
+    room.steady = unlimited;
+    double bend = 0.0;
+    double steep = 0.0;
     forEachDirection(motion_->geometry, {limits_.data(), axes_}, path_, p, [&](const Direction& d) {
-        bends = bends || d.d2 != 0.0 || d.d3 != 0.0;
+        bend = std::max(bend, std::fabs(d.d2));
+        steep = std::max(steep, std::fabs(d.d1));
+        if (d.d1 != 0.0) room.steady = std::min(room.steady, d.jerk / std::fabs(d.d1));
         narrow(room.acceleration, d.d2 * v * v, d.d1, d.down, d.up);
         narrow(room.jerk, 3.0 * d.d2 * v * a + d.d3 * v * v * v, d.d1, d.jerk, d.jerk);
     });
     const double rate = p.s1 > 0.0 ? std::min(1.0, v / p.s1) : 1.0;
     room.followed = rate * rate * p.s2;
-    room.safe = bends ? room.followed : std::min(0.0, room.followed);
+    room.turning = bend / steep * v;
+    room.safe = bend > 0.0 ? room.followed : std::min(0.0, room.followed);
     return room;
 }
 
@@ -115,30 +125,43 @@ bool PathBrake::recovers(Place place) const noexcept {
         if (missing <= 1e-9) return true;
         if (place.feed.s2 < room.acceleration.low - 1e-9) return false;
         if (!(room.jerk.high > 0.0) || room.jerk.low > room.jerk.high) return false;
-        if (i == 0)
-            dt = std::max(motion_->feed.cycle(), missing / room.jerk.high / kLookAheadSteps);
-        const double needed = missing / room.jerk.high;
-        place = advanced(place, room.jerk.high, std::min(dt, needed));
+        if (i == 0) {
+            // It has to be done before the velocity is used up: v/|a| at least, 2 v/|a| at most.
+            const double left = 2.0 * place.feed.s1 / std::fabs(place.feed.s2);
+            dt = std::min(missing / room.jerk.high, left) / kLookAheadSteps;
+            dt = std::max(dt, motion_->feed.cycle());
+        }
+        const double high = kLookAheadShare * room.jerk.high;
+        const double needed = missing / high;
+        const double fine = std::max(motion_->feed.cycle(), kLookAheadTurn / room.turning);
+        place = advanced(place, high, std::min({dt, needed, fine}));
     }
     return false;
 }
 
+/// Whether a jerk keeps the limits to the end of this cycle, and leaves a way on.
+bool PathBrake::mayTake(double jerk) const noexcept {
+    const Place next = advanced(place_, jerk, motion_->feed.cycle());
+    const Room room = roomAt(next);
+    const double slack = 1e-6 * std::fabs(jerk);
+    return jerk >= room.jerk.low - slack && jerk <= room.jerk.high + slack && recovers(next);
+}
+
 std::optional<double> PathBrake::choose(const Range& range) noexcept {
-    const double h = motion_->feed.cycle();
     const double v = place_.feed.s1;
     const double a = place_.feed.s2;
     // The constant jerk with which velocity and acceleration become zero together.
     const double land = a < 0.0 && v > 0.0 ? 0.5 * a * a / v : 0.0;
     const double landing = std::min(land, range.high);
-    landing_ = landing_ && land >= 0.5 * range.high && recovers(advanced(place_, landing, h));
+    landing_ = landing_ && land >= 0.5 * range.high && mayTake(landing);
     if (landing_) return landing;
     if (range.low < 0.0) {
-        for (const double part : {1.0, 0.5, 0.25, 0.1}) {
-            if (recovers(advanced(place_, part * range.low, h))) return part * range.low;
+        for (const double part : {1.0, 0.5, 0.25, 0.1, 0.03}) {
+            if (mayTake(part * range.low)) return part * range.low;
         }
     }
-    if (range.low <= 0.0 && range.high >= 0.0 && recovers(advanced(place_, 0.0, h))) return 0.0;
-    landing_ = land >= 0.5 * range.high && recovers(advanced(place_, landing, h));
+    if (range.low <= 0.0 && range.high >= 0.0 && mayTake(0.0)) return 0.0;
+    landing_ = land >= 0.5 * range.high && mayTake(landing);
     if (landing_) return landing;
     return std::nullopt;
 }
@@ -208,15 +231,21 @@ FeedState PathBrake::step() noexcept {
         follow();
         return place_.feed;
     }
-    double jerk = braking.value_or(room.jerk.high);
+    // Where no way on was left by what lies ahead, back towards the plan at the pace of the axes.
+    const double back = room.jerk.high > 0.0 ? room.jerk.high : 0.5 * room.steady;
+    double jerk = braking.value_or(back);
     const double turn = a < 0.0 && jerk > 0.0 ? -a / jerk : unlimited;
     if (turn <= h && v + 0.5 * a * turn <= 1e-9 * v) {
         // On the parabola down to zero within this cycle.
-        rest(std::min(restPlace_, place_.feed.s + v * turn / 3.0));
+        rest(std::min(restPlace_, place_.feed.s + v * std::min(turn, -2.0 * v / a) / 3.0));
         return place_.feed;
     }
     Place next = advanced(place_, jerk, h);
     const double followed = roomAt(next).followed;
+    if (next.feed.s2 > followed && follows) {
+        follow();
+        return place_.feed;
+    }
     if (next.feed.s2 > followed) {
         jerk = std::min(jerk, (followed - a) / h);
         next = advanced(place_, jerk, h);

@@ -15,6 +15,8 @@ namespace {
 /// needs the first only: it can be made slower as a whole.
 constexpr std::array<double, 5> kShares{0.998, 0.99, 0.97, 0.94, 0.9};
 
+/// Of the limits of velocity: they are met exactly, and what is left lets the next plan begin.
+constexpr double kSpeedShare = 0.9999;
 /// A feed from rest that would have to become slower than this is planned again.
 constexpr double kMostStretch = 1.5;
 /// Slower feeds meet the cycles elsewhere, so it may take more than one round, with ever more
@@ -64,7 +66,7 @@ struct PathPlanner::Work {
     detail::BarrierSolver solver;
 
     [[nodiscard]] detail::LimitSet limits(double share) const noexcept {
-        return {{axes.data(), space.axes}, cycle.count(), share};
+        return {{axes.data(), space.axes}, cycle.count(), share, share < 1.0 ? kSpeedShare : 1.0};
     }
     [[nodiscard]] std::optional<PathError> check() const noexcept;
     std::optional<PathError> append(std::span<const PathElement> elements, double notBefore,
@@ -102,7 +104,7 @@ std::optional<PathError> PathPlanner::Work::append(std::span<const PathElement> 
 bool PathPlanner::Work::tryShare(const detail::Section& section, double share, PathMotion& out) {
     const std::size_t first = out.feed.size();
     ++effort.attempts;
-    if (!detail::addStraight(out.geometry, section, limits(1.0), out.feed)) {
+    if (!detail::addStraight(out.geometry, section, limits(kShares[0]), out.feed)) {
         const detail::LimitSet set = limits(share);
         if (!detail::makeGrid(out.geometry, section, set, grid)) return false;
         detail::makeRows(out.geometry, section, grid, set, rows);

@@ -61,9 +61,11 @@ public:
         out_.rows.clear();
         out_.terms.clear();
         findJoints();
+        if (!section_.fromRest) findStart();
         if (grid_.head > 0.0) makeRest(true);
         for (std::size_t cell = 0; cell < grid_.cells(); ++cell) makeCell(cell);
         makeRest(false);
+        boundCoefficients();
     }
 
 private:
@@ -74,7 +76,10 @@ private:
     };
 
     void findJoints();
+    void findStart();
+    void relaxAtStart(Row& row, double s);
     void makeCell(std::size_t cell);
+    void boundCoefficients();
     void makeRest(bool head);
     void addRow(Row row, std::uint32_t piece, double s, bool first);
     void addTerms(std::uint32_t piece, const PathDerivatives& at, double jerkShare);
@@ -87,6 +92,9 @@ private:
     Rows& out_;
     Spline spline_;
     std::vector<Joint> joints_;
+    double speedAtStart_{1.0};
+    double pullAtStart_{1.0};
+    double startLength_{0.0};
 };
 
 void Maker::findJoints() {
@@ -99,6 +107,42 @@ void Maker::findJoints() {
         // A bound that was only asked for needs no room; one from a jump does.
         const bool asked = x >= piece.endVelocity * piece.endVelocity;
         joints_.push_back({s, x, asked ? 0.0 : kCyclesAtJoint * limits_.cycle * std::sqrt(x)});
+    }
+}
+
+/// A feed in motion may use its limits up to the share that it was planned with. So that there is
+/// a way on, the limits begin half way between that and the whole, and fall to their share soon.
+void Maker::findStart() {
+    PathDerivatives at;
+    geometry_.evaluate(grid_.pieces.front(), section_.from, at);
+    const double v = std::sqrt(section_.x0);
+    const PathFeed feed = geometry_.feedOf(grid_.pieces.front());
+    const double s2 = 0.5 * section_.slope0;
+    double speed = v / feed.velocity.count();
+    double pull = std::max(s2 / feed.acceleration.count(), -s2 / feed.deceleration.count());
+    double rise = 0.0;
+    for (std::size_t i = 0; i < limits_.axes.size(); ++i) {
+        const PathAxisLimits& axis = limits_.axes[i];
+        speed = std::max(speed, std::fabs(at.d1[i]) * v / axis.velocity.count());
+        const double a = at.d1[i] * s2 + at.d2[i] * section_.x0;
+        pull = std::max(pull, std::fabs(a) / axis.acceleration.count());
+        rise = std::max(rise, axis.acceleration.count() / axis.jerk.count());
+    }
+    speedAtStart_ = std::max(1.0, (0.5 + 0.5 * speed) / limits_.speedShare);
+    pullAtStart_ = std::max(1.0, (0.5 + 0.5 * pull) / limits_.share);
+    startLength_ = v * rise;
+}
+
+void Maker::relaxAtStart(Row& row, double s) {
+    const double near = 1.0 - (s - section_.from) / startLength_;
+    if (!(near > 0.0)) return;
+    const double speed = 1.0 + (speedAtStart_ - 1.0) * near;
+    const double pull = 1.0 + (pullAtStart_ - 1.0) * near;
+    row.xMax *= speed * speed;
+    for (std::size_t k = row.firstTerm; k < row.endTerm; ++k) {
+        out_.terms[k].low *= pull;
+        out_.terms[k].high *= pull;
+        out_.terms[k].jerk *= pull;
     }
 }
 
@@ -152,6 +196,7 @@ void Maker::addRow(Row row, std::uint32_t piece, double s, bool first) {
     row.firstTerm = static_cast<std::uint32_t>(out_.terms.size());
     addTerms(piece, at, jerkShareAt(s));
     row.endTerm = static_cast<std::uint32_t>(out_.terms.size());
+    if (!section_.fromRest) relaxAtStart(row, s);
     out_.rows.push_back(row);
 }
 
@@ -167,6 +212,28 @@ void Maker::makeCell(std::size_t cell) {
         row.time = (share == 0.5 ? 4.0 : 1.0) * h / 6.0;
         const double s = share == 1.0 ? grid_.nodes[cell + 1] : left + share * h;
         addRow(row, piece, s, cell == 0 && share == 0.0);
+    }
+}
+
+/// A spline stays below its coefficients. So the velocity keeps its limit between the points too.
+void Maker::boundCoefficients() {
+    std::vector<double> most(grid_.cells());
+    for (std::size_t cell = 0; cell < most.size(); ++cell) {
+        PathDerivatives at;
+        geometry_.evaluate(grid_.pieces[cell], 0.5 * (grid_.nodes[cell] + grid_.nodes[cell + 1]),
+                           at);
+        most[cell] = lineLimits(geometry_, grid_.pieces[cell], at, limits_).x;
+    }
+    for (std::size_t i = 2; i + 2 < grid_.cells() + 2; ++i) {
+        Row row{};
+        row.coefficient = static_cast<std::uint32_t>(i);
+        row.x[0] = 1.0;
+        row.acceleration = true;
+        row.xMax = std::min(most[i - 2], most[i - 1]);
+        if (i < most.size()) row.xMax = std::min(row.xMax, most[i]);
+        row.firstTerm = row.endTerm = static_cast<std::uint32_t>(out_.terms.size());
+        if (!section_.fromRest) relaxAtStart(row, grid_.nodes[i - 1]);
+        out_.rows.push_back(row);
     }
 }
 

@@ -24,7 +24,8 @@ struct Section {
 struct LimitSet {
     std::span<const PathAxisLimits> axes;
     double cycle;
-    double share;  ///< of all limits; at most 1
+    double share;       ///< of the limits of acceleration and jerk; at most 1
+    double speedShare;  ///< of those of velocity
 };
 
 /// What limits the feed at a point of the path, when one number is enough: as if along a line.

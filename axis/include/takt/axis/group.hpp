@@ -60,6 +60,8 @@ public:
     [[nodiscard]] GroupStatus status() const noexcept;
 
 private:
+    static constexpr std::uint64_t MostLead = 1000;
+
     // group.cpp: the cycle
     void updateMembers() noexcept;
     [[nodiscard]] ErrorId hurdle() const noexcept;
@@ -104,6 +106,7 @@ private:
     std::array<Axis*, MaxGroupAxes> members_{};
     std::size_t size_{0};  ///< places up to the last axis
     std::uint64_t latency_;
+    std::uint64_t lead_;  ///< cycles to the next plan: the latency, or more after late ones
     core::Duration cycle_;
 
     GroupView view_{};

@@ -50,6 +50,8 @@ private:
     struct Room {
         Range acceleration;
         Range jerk;
+        double steady;    ///< jerk along the path that the axes allow on a line
+        double turning;   ///< radians per second
         double followed;  ///< acceleration of the plan, made evenly slower
         double safe;      ///< acceleration from which on nothing has to be taken back
     };
@@ -57,6 +59,7 @@ private:
     [[nodiscard]] Place advanced(const Place& place, double jerk, double time) const noexcept;
     [[nodiscard]] Room roomAt(const Place& place) const noexcept;
     [[nodiscard]] Range rangeNow() const noexcept;
+    [[nodiscard]] bool mayTake(double jerk) const noexcept;
     [[nodiscard]] bool recovers(Place place) const noexcept;
     [[nodiscard]] std::optional<double> choose(const Range& range) noexcept;
     [[nodiscard]] bool mayStopHere() const noexcept;
