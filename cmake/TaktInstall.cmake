@@ -25,6 +25,8 @@ install(FILES ${CMAKE_BINARY_DIR}/runtime/program/include/takt/program/version.h
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/takt/program)
 install(DIRECTORY config/schema/ DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/schema)
 install(DIRECTORY samples/devices/ DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/devices)
+# The package's script puts it to /etc/default/takt, unless there is one.
+install(FILES packaging/takt.default DESTINATION ${CMAKE_INSTALL_DATADIR}/takt)
 install(FILES packaging/takt@.service DESTINATION lib/systemd/system)
 install(FILES packaging/takt.conf DESTINATION lib/sysusers.d)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -230,6 +230,11 @@ void Axis::step() noexcept {
     publishSet();
 }
 
+void Axis::missCycle() noexcept {
+    drive_.missCycles(1);
+    step();
+}
+
 void Axis::advance() noexcept {
     if (emergency_) {
         brakeByGate();

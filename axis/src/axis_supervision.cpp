@@ -53,12 +53,10 @@ void Axis::superviseDrive() noexcept {
 void Axis::superviseMotion() noexcept {
     if (homingRunning_ || !drive_.following()) return;
     const DriveInputs& in = drive_.inputs();
-    // After bridged cycles the step makes up for what the bridge got wrong.
-    const std::int64_t allowed = jumpCounts_ * (1 + static_cast<std::int64_t>(in.bridged));
-    if (in.step > allowed || in.step < -allowed) {
+    if (in.step > jumpCounts_ || in.step < -jumpCounts_) {
         view_.homed = false;
         raise(ErrorId::EncoderError,
-              {static_cast<double>(in.step), static_cast<double>(allowed), 0.0},
+              {static_cast<double>(in.step), static_cast<double>(jumpCounts_), 0.0},
               Reaction::DriveStop);
         return;
     }

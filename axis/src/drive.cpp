@@ -89,10 +89,11 @@ bool Drive::energised() const noexcept {
 }
 
 void Drive::readInputs() noexcept {
-    inputs_.bridged = inputs_.fresh ? 0 : inputs_.bridged + 1;
+    ++unseen_;
     inputs_.fresh = image_.health->inputsFresh;
     if (inputs_.fresh) {
         decode();
+        unseen_ = 0;
     } else if (inputs_.seen) {
         // Bridge a lost frame with the last step, so that the following error stays meaningful.
         inputs_.counts += inputs_.step;
@@ -132,10 +133,12 @@ void Drive::takeCounts(std::int32_t raw) noexcept {
     // The 32-bit difference is right across a wrap of the drive's position.
     const std::uint32_t moved = static_cast<std::uint32_t>(raw) -
                                 static_cast<std::uint32_t>(static_cast<std::uint64_t>(confirmed_));
-    const std::int64_t before = inputs_.counts;
-    confirmed_ += std::bit_cast<std::int32_t>(moved);
+    const std::int64_t distance = std::bit_cast<std::int32_t>(moved);
+    confirmed_ += distance;
     inputs_.counts = confirmed_;
-    inputs_.step = confirmed_ - before;
+    // Never taken from a bridged position: the error of one bridge would be the speed of the next.
+    const std::int64_t half = distance < 0 ? -std::int64_t{unseen_ / 2} : unseen_ / 2;
+    inputs_.step = (distance + half) / std::int64_t{unseen_};
 }
 
 void Drive::readErrorCode() noexcept {

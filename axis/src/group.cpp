@@ -184,10 +184,18 @@ void Group::step() noexcept {
     motion_.step();
     const double seconds = std::chrono::duration<double>(cycle_).count();
     jerk_ = moved ? core::Jerk{(motion_.feed().s2 - before) / seconds} : core::Jerk{};
-    if (joined_) {
-        for (std::size_t i = 0; i < size_; ++i) members_[i]->follow(motion_.states()[i]);
-    }
+    leadMembers();
     askForPlan();
+}
+
+void Group::missCycle() noexcept {
+    motion_.step();
+    leadMembers();
+}
+
+void Group::leadMembers() noexcept {
+    if (!joined_) return;
+    for (std::size_t i = 0; i < size_; ++i) members_[i]->follow(motion_.states()[i]);
 }
 
 GroupStatus Group::status() const noexcept {

@@ -136,8 +136,17 @@ planner::Profile GroupMotion::stopOf(std::size_t axis, const Dynamics& dynamics,
         return (!l.softPositive || extremes.highest <= *l.softPositive) &&
                (!l.softNegative || extremes.lowest >= *l.softNegative);
     };
-    const auto stop = planner::planStop(states_[axis], brakeLimits(axis, dynamics, byAxes));
-    if (stop.ok() && inside(stop.value())) return stop.value();
+    // The motion itself would have ended at its target: no stop goes farther.
+    const core::Position target = direct_[axis].end().position;
+    const bool forward = target >= states_[axis].position;
+    const auto endsInTime = [target, forward](const planner::Profile& profile) {
+        const core::Position end = profile.end().position;
+        return forward ? end <= target : end >= target;
+    };
+    for (const Dynamics& tried : {dynamics, kFree}) {
+        const auto stop = planner::planStop(states_[axis], brakeLimits(axis, tried, byAxes));
+        if (stop.ok() && inside(stop.value()) && endsInTime(stop.value())) return stop.value();
+    }
     // A stop too gentle for a software limit is made as hard as the axis may.
     const auto hard = planner::planStop(states_[axis], brakeLimits(axis, kFree, true));
     return hard.ok() ? hard.value() : planner::Profile::holding(states_[axis]);

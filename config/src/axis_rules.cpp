@@ -77,6 +77,46 @@ void checkSoftLimits(const AxisPart& axis) {
     }
 }
 
+/// Way from a steady velocity to rest with a jerk-limited ramp.
+double stoppingDistance(double velocity, double deceleration, double jerk) {
+    const bool full = velocity >= deceleration * deceleration / jerk;
+    const double time =
+        full ? velocity / deceleration + deceleration / jerk : 2.0 * std::sqrt(velocity / jerk);
+    return velocity * time / 2.0;
+}
+
+/// A move may end at a soft limit. A stop on the way there that needs more room than the end of the
+/// move goes beyond it.
+void checkStopRamp(const AxisPart& axis) {
+    const ElementReader reader = childOf(axis, "Limits");
+    const axis::LimitParams& limits = axis.params.limits;
+    if (!limits.softNegative && !limits.softPositive) return;
+    constexpr int Speeds = 20;
+    constexpr double Rounding = 1e-9;
+    double worst = 0.0;
+    double room = 0.0;
+    for (int i = 1; i <= Speeds; ++i) {
+        const double velocity = limits.velocity.count() * i / Speeds;
+        const double end =
+            stoppingDistance(velocity, limits.deceleration.count(), limits.jerk.count());
+        const double stop =
+            stoppingDistance(velocity, limits.stopDeceleration.count(), limits.stopJerk.count());
+        worst = std::max(worst, stop - end);
+        room = end;
+    }
+    if (worst <= room * Rounding) return;
+    reader.diagnostics().warning(
+        reader.place(),
+        fmt::format(
+            "{}: the stop ramp is weaker than the deceleration of a move: a stop close to a "
+            "soft limit overruns it by up to {:.4g} {}",
+            axis.reader.label(), worst, axis.params.unit),
+        fmt::format("stopDeceleration from {:.6g} {}/s^2 and stopJerk from {:.6g} {}/s^3",
+                    limits.deceleration.count(), axis.params.unit, limits.jerk.count(),
+                    axis.params.unit),
+        "make the stop ramp stronger, or keep so much room between soft limit and hard stop");
+}
+
 void checkModulo(const AxisPart& axis) {
     const auto& modulo = axis.params.scaling.modulo;
     if (!modulo) return;
@@ -183,6 +223,7 @@ void checkLostCommunication(const AxisPart& axis, const SlavePart& slave,
 void checkAxis(const AxisPart& axis, const NetworkPart& network) {
     checkRatio(axis);
     checkSoftLimits(axis);
+    checkStopRamp(axis);
     checkModulo(axis);
     checkVelocity(axis, network.params.cycle);
     for (const SlavePart& slave : network.slaves) {

@@ -129,6 +129,57 @@ TEST(Operator, StopsAProgramOnItsPathAndLetsItGoOn) {
     EXPECT_EQ(trace.at(1400, "X.state"), "Standstill");
 }
 
+TEST(Operator, ResetsAProgramAndStartsItAfresh) {
+    const std::string folder = freshFolder("control_program_reset");
+    // The first reset comes in motion and is refused: the program goes on as if nothing was.
+    writeFile(folder + "/in.txt",
+              "380 program-reset signals\n400 program-stop signals\n1500 program-reset signals\n"
+              "1600 program-start signals\n");
+    const auto result =
+        runTakt({"run", Gantry, "--fast", "--program", programPath("signals"), "--for", "3s",
+                 "--commands", "in.txt", "--record-commands", "out.txt", "--trace", "t.csv"},
+                folder, {"TAKT_TEST_PHASE=never"});
+    EXPECT_EQ(result.exitCode, 0) << result.output;
+    const TraceFile trace{folder + "/t.csv"};
+    EXPECT_EQ(trace.at(399, "X.state"), "DiscreteMotion");
+    EXPECT_EQ(trace.at(1598, "X.state"), "Standstill");
+    // A program that only goes on would find its move aborted and stay where it is.
+    EXPECT_EQ(trace.at(1700, "X.state"), "DiscreteMotion");
+    EXPECT_NEAR(trace.number(2990, "X.set"), trace.number(1598, "X.set") + 200.0, 0.01);
+    EXPECT_EQ(readFile(folder + "/out.txt"), readFile(folder + "/in.txt"));
+    const auto judged =
+        runCommand({"python3", std::string{TAKT_SOURCE_DIR} + "/tests/machine/continuity.py",
+                    "t.csv", "--machine", Gantry},
+                   folder);
+    EXPECT_EQ(judged.exitCode, 0) << judged.output;
+}
+
+TEST(Operator, GivesAFailedProgramAnotherTry) {
+    const std::string folder = freshFolder("control_program_again");
+    const std::string machine = changedMachine(
+        "control_two_programs", "<Program name=\"pick\" library=\"libgantry.so\"",
+        "<Program name=\"fails\" library=\"" + programPath("fails") +
+            "\"/>\n  <Program name=\"signals\" library=\"" + programPath("signals") + "\"");
+    writeFile(folder + "/in.txt", "500 program-reset fails\n600 program-start fails\n");
+    const auto result = runTakt({"run", machine, "--fast", "--for", "2s", "--commands", "in.txt"},
+                                folder, {"TAKT_TEST_PHASE=never"});
+    EXPECT_EQ(result.exitCode, 3) << "a failure counts, whatever came after";
+    const std::string words = "failed: no part in the gripper";
+    const std::size_t first = result.output.find(words);
+    ASSERT_NE(first, std::string::npos) << result.output;
+    EXPECT_NE(result.output.find(words, first + 1), std::string::npos) << result.output;
+}
+
+TEST(Operator, WritesObjectsInTheSameCyclesWhenTheCommandsAreReplayed) {
+    const std::string commands =
+        "200 download x 0x6065:0 E8030000\n260 upload x 0x6065:0\n300 power-on X\n"
+        "400 download y 0x6065:0 E8030000 force\n";
+    const Operated first{"objects_a", commands, "1s"};
+    EXPECT_EQ(readFile(first.folder + "/out.txt"), commands);
+    const Operated again{"objects_b", readFile(first.folder + "/out.txt"), "1s"};
+    EXPECT_TRUE(readFile(first.folder + "/t.csv") == readFile(again.folder + "/t.csv"));
+}
+
 TEST(CommandFile, IsRefusedWithLineAndReason) {
     const std::string folder = freshFolder("control_file");
     writeFile(folder + "/in.txt",
@@ -182,6 +233,93 @@ TEST(MachineStop, ByTheOperatorStopsTheAxisThatMoves) {
     EXPECT_EQ(trace.at(350, "Y.state"), "Disabled");
     EXPECT_EQ(trace.at(900, "X.state"), "Disabled");
     EXPECT_THAT(run.result.output, HasSubstr("machine stop in cycle 350 by operator"));
+}
+
+/// The gantry with a machine stop of its own, and the program that moves X for ever.
+struct Stopped {
+    Stopped(const std::string& name, const std::string& machineStop, const std::string& faults,
+            const std::string& program = "signals")
+        : folder{freshFolder("stop_" + name)} {
+        const std::string machine =
+            changedMachine("stop_machine_" + name, "<Program ", machineStop + "\n  <Program ");
+        std::vector<std::string> arguments{
+            "run",   machine, "--fast",  "--program", programPath(program),
+            "--for", "2s",    "--trace", "t.csv"};
+        if (!faults.empty()) {
+            writeFile(folder + "/faults.xml", "<Faults>" + faults + "</Faults>\n");
+            arguments.insert(arguments.end(), {"--faults", "faults.xml"});
+        }
+        result = runTakt(arguments, folder, {"TAKT_TEST_PHASE=never"});
+    }
+    [[nodiscard]] TraceFile trace() const { return TraceFile{folder + "/t.csv"}; }
+
+    std::string folder;
+    ProcessResult result;
+};
+
+TEST(MachineStop, ByALostInputStopsTheMachine) {
+    // Bit 2 of the inputs of Z is low here; six cycles without inputs are more than the three that
+    // are borne. The axes themselves are off, all but X.
+    const Stopped run{"lost_input",
+                      "<MachineStop onFault=\"false\"><Input slave=\"z\" index=\"0x60FD\" "
+                      "bit=\"2\" active=\"high\"/></MachineStop>",
+                      "<LostFrames cycle=\"400\" cycles=\"6\"/>"};
+    EXPECT_THAT(run.result.output, HasSubstr("by input 'z 60FDh bit 2'"));
+    EXPECT_THAT(run.result.output, Not(HasSubstr("by fault")));
+    EXPECT_EQ(run.trace().number(1500, "X.setVel"), 0.0);
+}
+
+TEST(MachineStop, ByAFaultOfOneAxisStopsAllOfThem) {
+    const Stopped run{"fault", "<MachineStop onFault=\"true\"/>",
+                      "<LostFrames cycle=\"400\" cycles=\"6\"/>"};
+    EXPECT_EQ(run.result.exitCode, 3) << run.result.output;
+    EXPECT_THAT(run.result.output, HasSubstr("by fault of axis X"));
+    EXPECT_THAT(run.result.output, HasSubstr("axis X ended in ErrorStop"));
+}
+
+TEST(MachineStop, LeavesTheRestAloneWhenAFaultIsNotToStopTheMachine) {
+    const Stopped run{"no_fault", "<MachineStop onFault=\"false\"/>",
+                      "<LostFrames cycle=\"400\" cycles=\"6\"/>"};
+    EXPECT_EQ(run.result.exitCode, 3) << run.result.output;
+    EXPECT_THAT(run.result.output, Not(HasSubstr("machine stop")));
+}
+
+TEST(MachineStop, ByAFailedProgramStopsTheAxesOfTheOthers) {
+    const std::string folder = freshFolder("stop_program_fault");
+    const std::string machine = changedMachine(
+        "stop_two_programs", "<Program name=\"pick\" library=\"libgantry.so\"",
+        "<MachineStop onFault=\"true\"/>\n  <Program name=\"fails\" every=\"10\" library=\"" +
+            programPath("fails") + "\"/>\n  <Program name=\"signals\" library=\"" +
+            programPath("signals") + "\"");
+    const auto result = runTakt({"run", machine, "--fast", "--for", "2s", "--trace", "t.csv"},
+                                folder, {"TAKT_TEST_PHASE=never"});
+    EXPECT_EQ(result.exitCode, 3) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("by failure of program 'fails'"));
+    const TraceFile trace{folder + "/t.csv"};
+    EXPECT_TRUE(trace.everWas("X.state", "Stopping"));
+    EXPECT_EQ(trace.at(1500, "X.state"), "Disabled");
+    EXPECT_FALSE(trace.everWas("X.state", "ErrorStop"));
+}
+
+TEST(MachineStop, LetsTheDriveStopAnAxisThatTakesTooLong) {
+    // 300 mm/s on a ramp of 6000 mm/s² take 50 ms and more.
+    const std::string folder = freshFolder("stop_overdue");
+    const std::string machine = changedMachine("stop_overdue_machine", "<Program ",
+                                               "<MachineStop time=\"20 ms\"/>\n  <Program ");
+    const auto result = runTakt({"run", machine, "--fast", "--program",
+                                 programPath("control_probe"), "--for", "2s", "--trace", "t.csv"},
+                                folder);
+    EXPECT_EQ(result.exitCode, 5) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("axis X did not stop and power off within the 0.02 s of "
+                                         "the machine stop; its drive stops it now"));
+    EXPECT_THAT(result.output, Not(HasSubstr("axis Y did not")));
+    // Quick stop: enable voltage without bit 2 (CiA 402 controlword 0x0002).
+    const TraceFile trace{folder + "/t.csv"};
+    bool quick = false;
+    for (std::size_t row = 0; row < trace.size(); ++row)
+        quick = quick ||
+                (std::strtoul(trace.at(row, "X.controlword").c_str(), nullptr, 0) & 0x87U) == 0x02U;
+    EXPECT_TRUE(quick);
 }
 
 }  // namespace

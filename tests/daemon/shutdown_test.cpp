@@ -1,7 +1,17 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <thread>
 
 #include "machine_files.hpp"
+#include "running_takt.hpp"
 #include "takt_process.hpp"
 #include "trace_file.hpp"
 
@@ -113,6 +123,47 @@ TEST(Shutdown, ASecondSignalLetsTheDriveStopQuickly) {
         quick = quick || (running && (control & 0x87U) == 0x02U);
     }
     EXPECT_TRUE(quick);
+}
+
+TEST(Shutdown, ASignalDuringBringUpBreaksItOffAndLeadsTheNetworkToInit) {
+    // The capture goes into a pipe that nobody empties, so that the bring-up stands in its middle.
+    const std::string pipe = freshFolder("shutdown_bring_up") + "/capture";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    const int size = ::fcntl(reader, F_SETPIPE_SZ, 4096);
+    ASSERT_GT(size, 0);
+    RunningTakt machine{"shutdown_bring_up_run",
+                        {"run", Gantry, "--sim", "--manual", "--pcap", pipe}};
+    for (int waiting = 0; waiting < size / 2; ::poll(nullptr, 0, 1))
+        ASSERT_EQ(::ioctl(reader, FIONREAD, &waiting), 0);
+    machine.signal(SIGINT);
+    std::thread drain{[reader] {
+        ::fcntl(reader, F_SETFL, 0);
+        std::array<char, 4096> buffer{};
+        while (::read(reader, buffer.data(), buffer.size()) > 0) {
+        }
+    }};
+    const auto result = machine.end();
+    drain.join();
+    ::close(reader);
+    EXPECT_EQ(result.exitCode, 130) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("broken off; all devices were sent to INIT"));
+    EXPECT_THAT(result.output, Not(HasSubstr("network in OP")));
+}
+
+TEST(Shutdown, NamesTheErrorStopOfAnAxisAlsoWhenASignalEndsTheRun) {
+    const std::string folder = freshFolder("shutdown_error_stop");
+    writeFile(folder + "/faults.xml",
+              "<Faults><LostFrames cycle=\"400\" cycles=\"6\"/></Faults>\n");
+    RunningTakt machine{"shutdown_error_stop_run",
+                        {"run", Gantry, "--sim", "--program", programPath("signals"), "--faults",
+                         folder + "/faults.xml"},
+                        {"TAKT_TEST_PHASE=never"}};
+    SocketClient{machine.socket()}.awaitState("X", "ErrorStop");
+    machine.signal(SIGINT);
+    const auto result = machine.end();
+    EXPECT_EQ(result.exitCode, 130) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("axis X ended in ErrorStop"));
 }
 
 TEST(Shutdown, NamesTheAxisThatDoesNotStopInTime) {

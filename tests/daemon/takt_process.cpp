@@ -34,6 +34,20 @@ namespace {
     _exit(127);
 }
 
+/// `takt` of this build, with the trap in front where there is one.
+struct TaktCommand {
+    TaktCommand(const std::vector<std::string>& arguments,
+                const std::vector<std::string>& extraEnvironment)
+        : command{std::string{TAKT_BINARY_DIR} + "/takt"}, environment{extraEnvironment} {
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        const std::string trap = std::string{TAKT_BINARY_DIR} + "/libtakt_trap.so";
+        if (std::filesystem::exists(trap)) environment.push_back("LD_PRELOAD=" + trap);
+    }
+
+    std::vector<std::string> command;
+    std::vector<std::string> environment;
+};
+
 }  // namespace
 
 ProcessResult runCommand(const std::vector<std::string>& command, const std::string& workDir,
@@ -57,12 +71,19 @@ ProcessResult runCommand(const std::vector<std::string>& command, const std::str
 
 ProcessResult runTakt(const std::vector<std::string>& arguments, const std::string& workDir,
                       const std::vector<std::string>& extraEnvironment) {
-    std::vector<std::string> command{std::string{TAKT_BINARY_DIR} + "/takt"};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    const std::string trap = std::string{TAKT_BINARY_DIR} + "/libtakt_trap.so";
-    std::vector<std::string> environment = extraEnvironment;
-    if (std::filesystem::exists(trap)) environment.push_back("LD_PRELOAD=" + trap);
-    return runCommand(command, workDir, environment);
+    const TaktCommand takt{arguments, extraEnvironment};
+    return runCommand(takt.command, workDir, takt.environment);
+}
+
+int startTakt(const std::vector<std::string>& arguments, const std::string& workDir,
+              const std::string& output, const std::vector<std::string>& extraEnvironment) {
+    const TaktCommand takt{arguments, extraEnvironment};
+    constexpr mode_t forOwner = 0600;
+    const int file = open(output.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, forOwner);
+    const pid_t child = fork();
+    if (child == 0) becomeCommand(takt.command, workDir, takt.environment, file);
+    close(file);
+    return child;
 }
 
 std::string freshFolder(const std::string& name) {

@@ -17,6 +17,11 @@ struct ProcessResult {
 ProcessResult runTakt(const std::vector<std::string>& arguments, const std::string& workDir,
                       const std::vector<std::string>& extraEnvironment = {});
 
+/// Starts it and leaves it running, with all it prints in the file `output`.
+/// \return its process number
+int startTakt(const std::vector<std::string>& arguments, const std::string& workDir,
+              const std::string& output, const std::vector<std::string>& extraEnvironment = {});
+
 /// Any command of this machine.
 ProcessResult runCommand(const std::vector<std::string>& command, const std::string& workDir,
                          const std::vector<std::string>& extraEnvironment = {});

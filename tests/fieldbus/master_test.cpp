@@ -284,4 +284,17 @@ TEST_F(MasterBringUp, FirstSendSitsOnTheGrid) {
     EXPECT_EQ(master->dcSample().phaseError, core::Duration{0});
 }
 
+TEST_F(MasterBringUp, SendsTheDevicesToInitWhenItsBringUpIsBrokenOff) {
+    build(test::exampleNetwork(2));
+    for (int until = 1; until < 12; ++until) {
+        int asked = 0;
+        const auto problems = master->bringUp({}, [&] { return ++asked < until; });
+        ASSERT_EQ(problems.size(), 1U) << until;
+        EXPECT_THAT(problems[0].text, testing::HasSubstr("broken off"));
+        for (const auto& device : segment.devices)
+            EXPECT_EQ(device.stateRequests.back() & 0x0FU, 0x01U) << until;
+    }
+    EXPECT_THAT(bringUp(), testing::IsEmpty()) << "and it can be brought up again";
+}
+
 }  // namespace

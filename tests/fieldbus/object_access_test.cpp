@@ -84,6 +84,22 @@ TEST_F(ObjectsInOp, TakesOneRequestAtATimePerDevice) {
     EXPECT_EQ(await(1).value.bytes[0], 2);
 }
 
+TEST_F(ObjectsInOp, GivesEachUserTheReplyToHisOwnRequest) {
+    using fieldbus::ethercat::ObjectUser;
+    segment.devices[0].objects[0x606400] = {1};
+    segment.devices[0].objects[0x606500] = {2};
+    auto& ofAxis = master->objects(0);
+    auto& ofOperator = master->objects(0, ObjectUser::Operator);
+    ASSERT_TRUE(ofOperator.startRead({0x6065, 0}));
+    EXPECT_FALSE(ofAxis.startRead({0x6064, 0})) << "the wire is taken";
+    EXPECT_EQ(ofAxis.reply().state, ObjectState::Idle) << "and nothing has changed";
+    for (int i = 0; i < 100 && ofOperator.reply().state == ObjectState::Pending; ++i) cycle();
+    EXPECT_EQ(ofOperator.reply().value.bytes[0], 2);
+    ASSERT_TRUE(ofAxis.startRead({0x6064, 0}));
+    EXPECT_EQ(await(0).value.bytes[0], 1);
+    EXPECT_EQ(ofOperator.reply().value.bytes[0], 2) << "still his";
+}
+
 TEST_F(ObjectsInOp, SurvivesLossOfAnyOneFrameOnTheWay) {
     for (std::uint64_t lost = 0; lost < 8; ++lost) {
         const auto value = static_cast<std::uint8_t>(0x40 + lost);

@@ -9,7 +9,7 @@ dpkg-deb --info "$package" | tee info.txt
 dpkg-deb --contents "$package" | tee contents.txt
 
 for file in bin/takt lib/libtakt.so lib/cmake/takt/takt-config.cmake lib/pkgconfig/takt.pc include/takt/takt.hpp \
-    include/takt/program/version.hpp share/takt/schema/machine.xsd share/takt/devices/cd300e.xml \
+    include/takt/program/version.hpp share/takt/schema/machine.xsd share/takt/devices/cd300e.xml share/takt/takt.default \
     lib/systemd/system/takt@.service lib/sysusers.d/takt.conf; do
     grep -q " ./usr/$file" contents.txt || fail "the package has no /usr/$file"
 done

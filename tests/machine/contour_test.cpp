@@ -88,6 +88,16 @@ TEST_F(Contour, GoesThroughTheJointOfTwoArcsThatGoOnInOneDirection) {
     expectSmooth();
 }
 
+TEST_F(Contour, TheSampleStaysWithinItsDeviationInSpace) {
+    const std::string sample = Source + "/samples/04_contour/machine.xml";
+    result = runTakt({"run", sample, "--fast", "--trace", "a.csv"}, folder);
+    ASSERT_EQ(result.exitCode, 0) << result.output;
+    const auto verdict = python({Source + "/tests/machine/contour.py", "a.csv", "--machine", sample,
+                                 "--group", "Table", "--path", Contours + "sample.path"},
+                                folder);
+    EXPECT_EQ(verdict.exitCode, 0) << verdict.output;
+}
+
 /// What stops a group half-way round a circle.
 class StoppedContour : public Contour, public testing::WithParamInterface<const char*> {};
 

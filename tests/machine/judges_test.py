@@ -91,6 +91,13 @@ class JudgingATrace(unittest.TestCase):
         columns["actual"] = list(columns["set"])
         self.assertEqual(self.faults(), [])
 
+    def test_a_motion_may_begin_in_the_first_row_behind_off_or_homing(self):
+        for state in continuity.RESTING_STATES:
+            good = continuity.abrupt_start(self.machine, state)
+            self.assertEqual(list(continuity.judge(good, self.machine, {})), [], state)
+            too_hard = continuity.abrupt_start(self.machine, state, 1.001)
+            self.assertTrue(list(continuity.judge(too_hard, self.machine, {})), state)
+
     def test_a_jump_between_the_last_row_off_and_motion_counts(self):
         columns = self.trace.axes["X"]
         for name, offset in (("set", 3.0), ("actual", 3.0), ("target", 1500.0)):

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <future>
 #include <memory>
 #include <takt/core/monotonic_clock.hpp>
@@ -91,6 +92,33 @@ TEST_F(OnAThread, ACallThatIsKeptFromTheProcessorIsExcusedWhereThatIsAllowed) {
         outcome = thread->call(*work_, i);
     EXPECT_EQ(outcome, CallOutcome::CameBack);
     EXPECT_EQ(script_->calls, 1) << "the late call is the same one";
+}
+
+/// Seems to have stood still since it was looked at last, and lets something happen meanwhile.
+class StallingClock : public core::ClockSource {
+public:
+    explicit StallingClock(std::function<void()> meanwhile) : meanwhile_{std::move(meanwhile)} {}
+    [[nodiscard]] core::HostTime now() const noexcept override {
+        if (looks_++ == 1) meanwhile_();
+        return clock_.now() + (looks_ > 1 ? 30s : 0s);
+    }
+    void sleepUntil(core::HostTime wake) noexcept override { clock_.sleepUntil(wake); }
+
+private:
+    core::MonotonicClock clock_;
+    std::function<void()> meanwhile_;
+    mutable int looks_{0};
+};
+
+TEST_F(OnAThread, ACallGetsItsBudgetAgainWhenTheWholeComputerStoodStill) {
+    script_->block = true;
+    StallingClock clock{[this] {
+        script_->block = false;
+        script_->block.notify_all();
+    }};
+    ThreadCaller thread{ThreadPlace{"test", 0, -1}, CallBudget{Little, false}, clock, notes_};
+    EXPECT_EQ(thread.call(*work_, 0), CallOutcome::CameBack);
+    EXPECT_TRUE(thread.retire());
 }
 
 TEST_F(OnAThread, ACallThatUsesUpTheProcessorIsNotExcused) {

@@ -43,6 +43,28 @@ TEST(Grid, SkipsPointsThatHavePassedAndNeverCatchesUp) {
     EXPECT_EQ(beat.number, 1U);
 }
 
+TEST(Grid, CountsAFewMissedPointsAsCycles) {
+    HandClock clock;
+    Grid grid{HostTime{1ms}, 1ms, 2};
+    grid.wait(clock);
+    clock.time = HostTime{3500us};
+    const Beat beat = grid.wait(clock);
+    EXPECT_EQ(beat.skipped, 2U);
+    EXPECT_EQ(beat.madeUpFor, 2U);
+    EXPECT_EQ(beat.number, 3U) << "the number is the place on the grid";
+}
+
+TEST(Grid, LetsTheMachinesTimeStandStillOverALongGap) {
+    HandClock clock;
+    Grid grid{HostTime{1ms}, 1ms, 2};
+    grid.wait(clock);
+    clock.time = HostTime{500ms};
+    const Beat beat = grid.wait(clock);
+    EXPECT_EQ(beat.skipped, 499U);
+    EXPECT_EQ(beat.madeUpFor, 0U);
+    EXPECT_EQ(beat.number, 1U);
+}
+
 TEST(Grid, MovesAllFurtherPointsByAShift) {
     HandClock clock;
     Grid grid{HostTime{1ms}, 1ms};

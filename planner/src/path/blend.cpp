@@ -186,12 +186,13 @@ double Curve::beside(const PathElement& element, const PathPoint& corner, double
 
 double Curve::stray(const PathElement& before, const PathElement& after) const noexcept {
     constexpr int kSamples = 64;
+    constexpr double kBetween = 1.001;  // it may be a little more between the samples
     double most = 0.0;
     for (int k = 1; k < kSamples; ++k) {
         const double u = k / static_cast<double>(kSamples);
         most = std::max(most, std::min(beside(before, before.to, u), beside(after, before.to, u)));
     }
-    return most;
+    return most * kBetween;
 }
 
 constexpr std::size_t kMeasures = 128;

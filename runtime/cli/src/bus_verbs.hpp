@@ -30,6 +30,7 @@ struct ObjectOptions {
     std::string object;  ///< "0x6064" or "0x1018:1"
     std::string type;    ///< "uint16"; empty: as the device file says
     std::string value;   ///< download only
+    bool force{false};   ///< download only: also while a program of the running machine runs
 };
 
 /// `takt upload`: reads an object of a device.

@@ -4,6 +4,7 @@
 #include <climits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <takt/cli/command_line.hpp>
 #include <takt/daemon/run.hpp>
 #include <takt/daemon/sim.hpp>
@@ -44,6 +45,11 @@ std::filesystem::path executableFolder() {
     return error ? std::filesystem::path{} : self.parent_path();
 }
 
+/// A script whose variable is not set must not run another machine than the one it means.
+std::string interfaceNamed(const std::string& text) {
+    return text.empty() ? "no interface is named; `ip link` lists what there is" : std::string{};
+}
+
 /// What `run` needs beyond the options struct until all of the line has been read.
 struct RunArguments {
     daemon::RunOptions options;
@@ -63,6 +69,7 @@ void addRun(CLI::App& app, RunArguments& run) {
     command
         ->add_option("--interface", options.interface,
                      "on the network at this interface, in real time")
+        ->check(interfaceNamed)
         ->excludes(sim)
         ->excludes(fast);
     command->add_option("--program", options.programLibrary,
@@ -131,6 +138,12 @@ CLI::App* addBusVerb(CLI::App& app, const char* name, const char* text, BusOptio
     auto* interface = command->add_option("--interface", bus.interface, "network interface");
     command->add_option("--sim", bus.machine, "the simulated network of this machine file")
         ->excludes(interface);
+    if (std::string_view{name} != "scan") {
+        command
+            ->add_option("--socket", bus.socket,
+                         "control socket of a running machine; needed when several run")
+            ->excludes(interface);
+    }
     command->add_option("--esi", bus.esi, "more device files to know devices by");
     command->add_flag("--json", bus.json, "as JSON");
     return command;
@@ -154,11 +167,14 @@ void addBusVerbs(CLI::App& app, BusArguments& arguments) {
                             "uint16, int32, float …; without: as the device file says");
     }
     download->add_option("value", object.value, "decimal, or hexadecimal with 0x")->required();
+    download->add_flag("--force", object.force,
+                       "also while a program of the running machine runs or the axis moves");
 }
 
 /// \return empty: another verb was given
 std::optional<int> runBusVerb(const CLI::App& app, BusArguments& arguments) {
     arguments.bus.executableFolder = executableFolder();
+    arguments.bus.verb = app.get_subcommands().front()->get_name();
     arguments.states.bus = arguments.object.bus = arguments.bus;
     if (app.got_subcommand("scan")) return scan(arguments.bus);
     if (app.got_subcommand("slaves")) return slaves(arguments.bus);
@@ -172,6 +188,7 @@ std::optional<int> runBusVerb(const CLI::App& app, BusArguments& arguments) {
 struct RemoteArguments {
     WatchOptions watch;
     EventsOptions events;
+    DiagOptions diag;
     JogOptions jog;
     OrderOptions order;
     std::string powerState;
@@ -192,6 +209,9 @@ void addTables(CLI::App& app, RemoteArguments& remote) {
     auto* events = app.add_subcommand("events", "show what has happened in the running machine");
     events->add_flag("--follow,-f", remote.events.follow, "go on with what happens now");
     addRemoteOptions(*events, remote.events.remote, true);
+    auto* diag = app.add_subcommand(
+        "diag", "how cycle, clocks and devices of the running machine are doing");
+    addRemoteOptions(*diag, remote.diag.remote, true);
     auto* jog =
         app.add_subcommand("jog", "move an axis of the running machine step by step with the keys");
     jog->add_option("axis", remote.jog.axis, "name of the axis")->required();
@@ -219,11 +239,12 @@ void addOrders(CLI::App& app, RemoteArguments& remote) {
     home->add_option("axis", request.axis, "name of the axis")->required();
     auto* stop =
         app.add_subcommand("stop", "stop the running machine: axes ramp down and are switched off");
-    auto* program =
-        app.add_subcommand("program", "stop a program of the running machine, or let it go on");
-    program->add_option("action", remote.programAction, "start or stop")
+    auto* program = app.add_subcommand("program",
+                                       "stop a program of the running machine, let it go on, or "
+                                       "put a fresh instance in its place");
+    program->add_option("action", remote.programAction, "start, stop or reset")
         ->required()
-        ->check(CLI::IsMember({"start", "stop"}));
+        ->check(CLI::IsMember({"start", "stop", "reset"}));
     program->add_option("name", request.program, "name of the program")->required();
     for (CLI::App* command : {power, reset, home, stop, program}) {
         addRemoteOptions(*command, remote.order.remote, true);
@@ -235,6 +256,7 @@ std::optional<int> runRemote(const CLI::App& app, RemoteArguments& remote) {
     std::string& verb = remote.order.request.verb;
     if (app.got_subcommand("watch")) return runWatch(remote.watch);
     if (app.got_subcommand("events")) return runEvents(remote.events);
+    if (app.got_subcommand("diag")) return runDiag(remote.diag);
     if (app.got_subcommand("jog")) return runJog(remote.jog);
     if (app.got_subcommand("power")) verb = "power-" + remote.powerState;
     if (app.got_subcommand("reset"))
@@ -295,10 +317,7 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
         checkOptions.searchDirs.push_back(executableFolder());
         return daemon::check(checkOptions);
     }
-    if (app.got_subcommand("sim")) {
-        simOptions.searchDirs.push_back(executableFolder());
-        return daemon::sim(simOptions);
-    }
+    if (app.got_subcommand("sim")) return daemon::sim(simOptions);
     runArguments.options.searchDirs.push_back(executableFolder());
     return daemon::run(runArguments.options, std::move(programs));
 }

@@ -36,9 +36,8 @@ public:
     /// \return the unit of the axis. \throw std::runtime_error when there is no such axis
     void find() {
         const auto status = remote_.status();
-        for (const auto& axis : status.axes) {
-            if (axis.name == options_.axis) unit_ = axis.unit;
-        }
+        look(status);
+        unit_ = axis_.unit;
         if (unit_.empty())
             throw std::runtime_error{fmt::format("there is no axis '{}'", options_.axis)};
     }
@@ -88,6 +87,7 @@ private:
         if (inch_ != 0) return;
         note_.clear();
         inch_ = send("inch", distance);
+        show();
     }
 
     std::uint64_t send(const char* verb, double distance) {
@@ -113,17 +113,24 @@ private:
         if (!reply.error.empty()) note_ = reply.error;
         if (!reply.status) return;
         asked_ = false;
-        for (const auto& axis : reply.status->axes) {
-            if (axis.name == options_.axis) show(axis, *reply.status);
+        look(*reply.status);
+        show();
+    }
+
+    void look(const daemon::StatusReport& status) {
+        machineStop_ = status.machineStop;
+        for (const auto& axis : status.axes) {
+            if (axis.name == options_.axis) axis_ = axis;
         }
     }
 
-    void show(const daemon::AxisReport& axis, const daemon::StatusReport& status) {
+    void show() const {
         std::string note = note_;
-        if (!status.machineStop.empty()) note = "MACHINE STOP by " + status.machineStop;
-        if (!axis.error.empty()) note = axis.error;
-        fmt::print("\r\033[K{} {:12.4f} {}  {:<16} step {:g} {} at {:g} {}/s  {}", axis.name,
-                   axis.actual, unit_, axis.state, steps_[step_], unit_, options_.velocity, unit_,
+        if (inch_ != 0) note = "under way";  // other keys than the space bar wait for its end
+        if (!machineStop_.empty()) note = "MACHINE STOP by " + machineStop_;
+        if (!axis_.error.empty()) note = axis_.error;
+        fmt::print("\r\033[K{} {:12.4f} {}  {:<16} step {:g} {} at {:g} {}/s  {}", axis_.name,
+                   axis_.actual, unit_, axis_.state, steps_[step_], unit_, options_.velocity, unit_,
                    note);
         std::fflush(stdout);
     }
@@ -134,6 +141,8 @@ private:
     std::size_t step_{0};
     std::string unit_;
     std::string note_;
+    daemon::AxisReport axis_;  ///< as it was last seen
+    std::string machineStop_;
     std::uint64_t inch_{0};  ///< request under way
     bool asked_{false};
 };

@@ -304,7 +304,7 @@ std::vector<ProjectDevice> pickDevices(const NewProjectOptions& options,
         network.executableFolder = options.executableFolder;
         ToolBus bus{network};
         std::vector<wire::Identity> found;
-        for (const auto& device : bus.tool().devices()) found.push_back(device.identity);
+        for (const auto& device : bus.segment().devices()) found.push_back(device.identity);
         return findDevices(files, found);
     }
     if (files.empty()) files = {installed.devices / "cd300e.xml"};

@@ -62,7 +62,7 @@ int upload(const ObjectOptions& options) {
         if (!options.type.empty()) type = parseType(options.type);
         ToolBus bus{options.bus};
         const std::size_t position = bus.find(options.slave);
-        const core::ObjectReply reply = bus.tool().upload(position, address);
+        const core::ObjectReply reply = bus.segment().upload(position, address);
         refuseFailed(reply, position, address);
         const auto* const entry = describe(bus.device(position), address);
         if (!type) type = entry != nullptr ? entry->type : typeOfSize(reply.value.size);
@@ -88,7 +88,8 @@ int download(const ObjectOptions& options) {
                             nameOf(address))};
         }
         const core::ObjectValue value = parseValue(options.value, *type);
-        const core::ObjectReply reply = bus.tool().download(position, address, value);
+        const core::ObjectReply reply =
+            bus.segment().download(position, address, value, options.force);
         refuseFailed(reply, position, address);
         print(options, position, address, value, *type,
               entry != nullptr ? entry->name : std::string{});

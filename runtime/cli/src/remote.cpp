@@ -115,7 +115,8 @@ std::optional<daemon::ControlReply> Remote::receive(std::chrono::milliseconds pa
 std::optional<daemon::ControlReply> Remote::ask(const daemon::ControlRequest& request,
                                                 const std::function<bool()>& keepOn) {
     const std::uint64_t id = send(request);
-    const bool question = request.verb == "status" || request.verb == "events";
+    const bool question =
+        request.verb == "status" || request.verb == "events" || request.verb == "network";
     auto last = std::chrono::steady_clock::now();
     while (!keepOn || keepOn()) {
         if (auto reply = receive(HeartbeatEvery)) {
@@ -140,6 +141,14 @@ daemon::StatusReport Remote::status() {
         throw std::runtime_error{reply ? reply->error : std::string{"the machine does not answer"}};
     }
     return *reply->status;
+}
+
+daemon::NetworkReport Remote::network() {
+    daemon::ControlRequest request;
+    request.verb = "network";
+    const auto reply = ask(request);
+    if (!reply->network) throw std::runtime_error{reply->error};
+    return *reply->network;
 }
 
 int runOrder(const OrderOptions& options) {

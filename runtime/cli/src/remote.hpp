@@ -36,6 +36,7 @@ public:
     std::optional<daemon::ControlReply> ask(const daemon::ControlRequest& request,
                                             const std::function<bool()>& keepOn = {});
     [[nodiscard]] daemon::StatusReport status();
+    [[nodiscard]] daemon::NetworkReport network();
     /// The line of the last reply as it came, without its end.
     [[nodiscard]] const std::string& lastLine() const noexcept { return lastLine_; }
     [[nodiscard]] int descriptor() const noexcept { return socket_; }
@@ -73,6 +74,12 @@ struct EventsOptions {
 };
 /// `takt events`
 int runEvents(const EventsOptions& options);
+
+struct DiagOptions {
+    RemoteOptions remote;
+};
+/// `takt diag`
+int runDiag(const DiagOptions& options);
 
 struct JogOptions {
     RemoteOptions remote;

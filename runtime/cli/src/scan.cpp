@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "bus_verbs.hpp"
 #include "json.hpp"
 
@@ -38,6 +40,11 @@ std::string jsonOf(const ToolDevice& device) {
 
 int scan(const BusOptions& options) {
     return runVerb("scan", [&options] {
+        if (options.interface.empty() && options.machine.empty()) {
+            throw std::runtime_error{
+                "where? name a network with --interface IF, or a simulated one with --sim "
+                "MACHINE.xml; takt slaves shows the devices of the machine that runs"};
+        }
         const ToolBus bus{options};
         std::vector<std::string> lines;
         if (!options.json) {

@@ -20,11 +20,13 @@ int slaves(const BusOptions& options) {
             const ToolDevice device = bus.device(i);
             const auto& found = *device.found;
             const std::string problem = problemOf(found);
+            const std::string alias =
+                bus.segment().inOperation() ? std::string{} : std::to_string(found.alias);
             if (options.json) {
                 lines.push_back(JsonObject{}
                                     .addRaw("pos", std::to_string(i))
                                     .addRaw("address", std::to_string(found.station))
-                                    .addRaw("alias", std::to_string(found.alias))
+                                    .addRaw("alias", alias.empty() ? "null" : alias)
                                     .add("name", device.name)
                                     .add("state", wire::name(found.state))
                                     .add("error", found.stateError)
@@ -35,8 +37,9 @@ int slaves(const BusOptions& options) {
                 continue;
             }
             fmt::print("{:>3}  {:>5}  {:>5}  {:<16}  {:<14}  {:<16}  {}{}{}\n", i, found.station,
-                       found.alias, device.name.empty() ? "-" : device.name, stateWord(found),
-                       device.type(), found.name, problem.empty() ? "" : ": ", problem);
+                       alias.empty() ? "-" : alias, device.name.empty() ? "-" : device.name,
+                       stateWord(found), device.type(), found.name, problem.empty() ? "" : ": ",
+                       problem);
         }
         if (options.json) fmt::print("{}\n", jsonArray(lines));
         return 0;

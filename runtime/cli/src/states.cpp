@@ -31,8 +31,8 @@ AlState parseState(std::string text) {
 std::string lead(ToolBus& bus, const std::vector<std::size_t>& positions, AlState target) {
     std::string refused;
     for (const std::size_t i : positions) {
-        if (bus.tool().toState(i, target)) continue;
-        const auto& found = bus.tool().devices()[i];
+        if (bus.segment().toState(i, target)) continue;
+        const auto& found = bus.segment().devices()[i];
         const std::string problem = problemOf(found);
         refused += fmt::format("{}device {} stays in {}{}{}", refused.empty() ? "" : "; ", i,
                                stateWord(found), problem.empty() ? "" : ": ", problem);

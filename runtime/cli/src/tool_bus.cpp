@@ -8,10 +8,8 @@
 #include <stdexcept>
 #include <takt/config/esi_reader.hpp>
 #include <takt/config/load_machine.hpp>
-#include <takt/core/monotonic_clock.hpp>
+#include <takt/daemon/bus_end.hpp>
 #include <takt/daemon/run_options.hpp>
-#include <takt/fieldbus/packet_link.hpp>
-#include <takt/twin/twin.hpp>
 #include <utility>
 
 #include "installed_files.hpp"
@@ -19,9 +17,6 @@
 namespace takt::cli {
 
 namespace {
-
-using fieldbus::ethercat::SegmentDevice;
-using fieldbus::ethercat::SegmentTool;
 
 /// The tools have one frame under way, and what answers late must not keep its reply out.
 constexpr std::size_t FramesAtOnce = 4;
@@ -80,51 +75,51 @@ std::string ToolDevice::type() const {
 
 struct ToolBus::Parts {
     std::optional<config::MachineConfig> machine;
-    std::unique_ptr<twin::Twin> twin;
-    std::unique_ptr<fieldbus::PacketLink> link;
-    core::MonotonicClock clock;
-    std::optional<SegmentTool> tool;
+    std::unique_ptr<Segment> segment;
     std::vector<KnownDevice> known;
 };
 
 ToolBus::ToolBus(const BusOptions& options) : parts_{std::make_unique<Parts>()} {
     Parts& parts = *parts_;
-    if (options.interface.empty() == options.machine.empty()) {
-        throw std::runtime_error{
-            "where? name a network with --interface IF, or a simulated one with --sim MACHINE.xml"};
-    }
     if (!options.machine.empty()) {
         parts.machine = load(options.machine);
-        std::vector<std::shared_ptr<const wire::DeviceDescription>> devices;
-        for (const auto& slave : parts.machine->network.slaves) devices.push_back(slave.device);
-        parts.twin = std::make_unique<twin::Twin>(parts.machine->twin, std::move(devices),
-                                                  parts.machine->network.cycle);
-        parts.tool.emplace(parts.twin->link(), parts.twin->clock());
+        std::vector<std::string> names;
+        for (const auto& slave : parts.machine->network.slaves) names.push_back(slave.name);
+        parts.segment =
+            std::make_unique<WireSegment>(daemon::simulatedEnd(*parts.machine), std::move(names));
+    } else if (!options.interface.empty()) {
+        parts.segment = std::make_unique<WireSegment>(
+            daemon::interfaceEnd(options.interface, FramesAtOnce), std::vector<std::string>{});
     } else {
-        parts.link = std::make_unique<fieldbus::PacketLink>(options.interface, FramesAtOnce);
-        parts.tool.emplace(*parts.link, parts.clock);
+        parts.segment = segmentOfMachine(options.socket, "takt " + options.verb);
+        for (const auto& file : parts.segment->deviceFiles()) {
+            if (std::filesystem::is_regular_file(file)) learn(file, parts.known);
+        }
     }
-    parts.known = catalogue(options);
-    parts.tool->scan();
+    for (KnownDevice& device : catalogue(options)) parts.known.push_back(std::move(device));
 }
 
 ToolBus::~ToolBus() = default;
 
-SegmentTool& ToolBus::tool() noexcept {
-    return *parts_->tool;
+Segment& ToolBus::segment() noexcept {
+    return *parts_->segment;
+}
+
+const Segment& ToolBus::segment() const noexcept {
+    return *parts_->segment;
 }
 
 std::size_t ToolBus::size() const noexcept {
-    return parts_->tool->devices().size();
+    return parts_->segment->devices().size();
 }
 
 ToolDevice ToolBus::device(std::size_t position) const {
     const Parts& parts = *parts_;
     ToolDevice device;
-    device.found = &parts.tool->devices()[position];
+    device.found = &parts.segment->devices()[position];
+    device.name = parts.segment->nameOf(position);
     if (parts.machine && position < parts.machine->network.slaves.size()) {
         const auto& slave = parts.machine->network.slaves[position];
-        device.name = slave.name;
         device.description = slave.device.get();
         device.file = std::filesystem::path{slave.device->source}.filename().string();
         return device;

@@ -9,12 +9,17 @@
 #include <takt/wire/device_description.hpp>
 #include <vector>
 
+#include "segment.hpp"
+
 namespace takt::cli {
 
-/// Where the bus tools look: on a network interface, or on the simulated network of a machine file.
+/// Where the bus tools look: on a network interface, on the simulated network of a machine file,
+/// or, where neither is named, on the network of the machine that runs.
 struct BusOptions {
+    std::string verb;  ///< "slaves"; how the tool calls itself
     std::string interface;
-    std::filesystem::path machine;           ///< simulated; empty: the interface
+    std::filesystem::path machine;           ///< simulated
+    std::filesystem::path socket;            ///< of a running machine; empty: the only one
     std::vector<std::filesystem::path> esi;  ///< more device files to know devices by
     std::filesystem::path executableFolder;  ///< installed device files are found from there
     bool json{false};
@@ -32,7 +37,7 @@ struct ToolDevice {
     [[nodiscard]] std::string type() const;
 };
 
-/// A segment that has been scanned.
+/// A network that has been looked at.
 class ToolBus {
 public:
     /// \throw std::runtime_error one line: what is missing
@@ -41,7 +46,8 @@ public:
     ToolBus(const ToolBus&) = delete;
     ToolBus& operator=(const ToolBus&) = delete;
 
-    [[nodiscard]] fieldbus::ethercat::SegmentTool& tool() noexcept;
+    [[nodiscard]] Segment& segment() noexcept;
+    [[nodiscard]] const Segment& segment() const noexcept;
     [[nodiscard]] std::size_t size() const noexcept;
     /// \pre position < size()
     [[nodiscard]] ToolDevice device(std::size_t position) const;

@@ -11,14 +11,18 @@ namespace takt::daemon {
 
 namespace {
 
-program::ProgramPtr takeLinked(std::vector<LinkedProgram>& linked, const std::string& name) {
+ProgramFactory factoryOf(LinkedProgram linked) {
+    return [make = std::move(linked.make)] { return program::LoadedProgram{make(), {}}; };
+}
+
+ProgramFactory takeLinked(std::vector<LinkedProgram>& linked, const std::string& name) {
     const auto found =
         std::find_if(linked.begin(), linked.end(),
                      [&name](const LinkedProgram& entry) { return entry.name == name; });
-    if (found == linked.end()) return nullptr;
-    program::ProgramPtr program = std::move(found->program);
+    if (found == linked.end()) return {};
+    ProgramFactory factory = factoryOf(std::move(*found));
     linked.erase(found);
-    return program;
+    return factory;
 }
 
 std::size_t slaveIndex(const fieldbus::NetworkParams& network, const std::string& name) {
@@ -29,37 +33,38 @@ std::size_t slaveIndex(const fieldbus::NetworkParams& network, const std::string
 
 }  // namespace
 
-std::vector<ProgramHost> loadPrograms(const config::MachineConfig& machine,
-                                      std::vector<LinkedProgram> linked,
-                                      std::vector<std::string>& problems) {
-    std::vector<ProgramHost> programs;
-    std::uint16_t number = 1;
+LoadedPrograms loadPrograms(const config::MachineConfig& machine, std::vector<LinkedProgram> linked,
+                            std::vector<std::string>& problems) {
+    LoadedPrograms programs;
+    const auto load = [&](const program::ProgramParams& params, ProgramFactory factory) {
+        program::LoadedProgram loaded = factory();
+        if (!loaded.program) {
+            problems.push_back(fmt::format("{}: error: {}", params.origin, loaded.error));
+            return;
+        }
+        const auto number = static_cast<std::uint16_t>(programs.hosts.size() + 1);
+        programs.hosts.emplace_back(params, std::move(loaded.program), machine.axes.size(),
+                                    machine.groups.size(), number);
+        programs.factories.push_back(std::move(factory));
+    };
     for (const program::ProgramParams& params : machine.programs) {
-        program::ProgramPtr program = takeLinked(linked, params.name);
-        if (!program && params.library.empty()) {
+        ProgramFactory factory = takeLinked(linked, params.name);
+        if (!factory && params.library.empty()) {
             problems.push_back(
                 fmt::format("{}: error: program '{}' has no library and is not linked in; do: add "
                             "library=\"…\", or run the executable that brings it",
                             params.origin, params.name));
             continue;
         }
-        if (!program) {
-            program::LoadedProgram loaded = program::loadProgram(params.library);
-            if (!loaded.program) {
-                problems.push_back(fmt::format("{}: error: {}", params.origin, loaded.error));
-                continue;
-            }
-            program = std::move(loaded.program);
-        }
-        programs.emplace_back(params, std::move(program), machine.axes.size(),
-                              machine.groups.size(), number++);
+        if (!factory)
+            factory = [library = params.library] { return program::loadProgram(library); };
+        load(params, std::move(factory));
     }
     for (LinkedProgram& rest : linked) {
         program::ProgramParams params;
         params.name = rest.name;
         params.origin = machine.file;
-        programs.emplace_back(std::move(params), std::move(rest.program), machine.axes.size(),
-                              machine.groups.size(), number++);
+        load(params, factoryOf(std::move(rest)));
     }
     return programs;
 }

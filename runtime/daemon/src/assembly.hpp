@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <takt/config/machine_config.hpp>
@@ -12,11 +13,19 @@
 
 namespace takt::daemon {
 
+/// Makes an instance of a program, again and again.
+using ProgramFactory = std::function<program::LoadedProgram()>;
+
+/// The programs of a machine, and for each what makes a fresh one.
+struct LoadedPrograms {
+    std::vector<ProgramHost> hosts;
+    std::vector<ProgramFactory> factories;
+};
+
 /// Loads every program of the machine: linked ones by name, the others from their libraries.
 /// `problems` gets one `file:line: …` for each that cannot be had.
-std::vector<ProgramHost> loadPrograms(const config::MachineConfig& machine,
-                                      std::vector<LinkedProgram> linked,
-                                      std::vector<std::string>& problems);
+LoadedPrograms loadPrograms(const config::MachineConfig& machine, std::vector<LinkedProgram> linked,
+                            std::vector<std::string>& problems);
 
 /// The machine's axes, not yet bound to a bus, at the end of `axes`.
 void makeAxes(const config::MachineConfig& machine, Axes& axes);

@@ -17,4 +17,10 @@ struct Movers {
     Groups& groups;
 };
 
+/// rt. Its set-point moves, or may do so at any moment. A stop that holds an axis at rest is none.
+[[nodiscard]] inline bool isMoving(const axis::Axis& axis) noexcept {
+    const axis::AxisView& view = axis.view();
+    return view.inMotion() || !view.atRest;
+}
+
 }  // namespace takt::daemon

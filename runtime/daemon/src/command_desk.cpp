@@ -17,8 +17,12 @@ CommandDesk::CommandDesk(const Parts& parts, core::Duration cycle, std::vector<T
       record_{record},
       heartbeatLimit_{static_cast<core::CycleNumber>(HeartbeatTime / cycle)} {}
 
-void CommandDesk::cycle(core::CycleNumber cycle, bool operating) noexcept {
+void CommandDesk::cycle(core::CycleNumber cycle, bool operating, bool allTold) noexcept {
     takeAll(cycle, operating);
+    if (parked_ && allTold) {
+        answer(*parked_, resetProgram(*parked_, operating), cycle);
+        parked_.reset();
+    }
     const bool lost = cycle - lastHeartbeat_ > heartbeatLimit_;
     if (lost || !operating) {
         for (std::size_t i = 0; i < stations_.size(); ++i) {
@@ -29,6 +33,7 @@ void CommandDesk::cycle(core::CycleNumber cycle, bool operating) noexcept {
         }
     }
     runStations(cycle);
+    runBus(cycle);
 }
 
 void CommandDesk::takeAll(core::CycleNumber cycle, bool operating) noexcept {
@@ -39,8 +44,10 @@ void CommandDesk::takeAll(core::CycleNumber cycle, bool operating) noexcept {
     for (std::size_t i = 0; i < MostPerCycle && parts_.rings.commands.pop(command); ++i) {
         if (replaying_ && command.order != Order::MachineStop) {
             if (command.ticket == 0) continue;
-            static_cast<void>(parts_.rings.answers.push(
-                {command.ticket, cycle, AnswerKind::Refused, Refusal::Replaying, {}, 0}));
+            static_cast<void>(parts_.rings.answers.push({.ticket = command.ticket,
+                                                         .cycle = cycle,
+                                                         .kind = AnswerKind::Refused,
+                                                         .refusal = Refusal::Replaying}));
             continue;
         }
         take(command, cycle, operating);
@@ -53,24 +60,31 @@ void CommandDesk::take(const ControlCommand& command, core::CycleNumber cycle,
         parts_.rings.takenLost.fetch_add(1, std::memory_order_relaxed);
     }
     const Verdict verdict = execute(command, cycle, operating);
-    const bool refused = verdict.refusal != Refusal::None;
-    if (refused) {
-        parts_.rings.events.add(commandRefused(cycle, command, verdict.refusal, verdict.detail));
-    } else if (command.order != Order::Heartbeat && command.order != Order::Leave) {
+    if (verdict.refusal == Refusal::None && command.order != Order::Heartbeat &&
+        command.order != Order::Leave) {
         parts_.rings.events.add(commandTaken(cycle, command));
     }
-    if (verdict.pending || command.ticket == 0) return;
-    static_cast<void>(parts_.rings.answers.push({command.ticket,
-                                                 cycle,
-                                                 refused ? AnswerKind::Refused : AnswerKind::Done,
-                                                 verdict.refusal,
-                                                 {},
-                                                 verdict.detail}));
+    if (!verdict.pending) answer(command, verdict, cycle);
 }
 
-CommandDesk::Verdict CommandDesk::execute(const ControlCommand& command, core::CycleNumber cycle,
-                                          bool operating) noexcept {
+void CommandDesk::answer(const ControlCommand& command, const Verdict& verdict,
+                         core::CycleNumber cycle) noexcept {
+    const bool refused = verdict.refusal != Refusal::None;
+    if (refused)
+        parts_.rings.events.add(commandRefused(cycle, command, verdict.refusal, verdict.detail));
+    if (command.ticket == 0) return;
+    static_cast<void>(
+        parts_.rings.answers.push({.ticket = command.ticket,
+                                   .cycle = cycle,
+                                   .kind = refused ? AnswerKind::Refused : AnswerKind::Done,
+                                   .refusal = verdict.refusal,
+                                   .detail = verdict.detail}));
+}
+
+Verdict CommandDesk::execute(const ControlCommand& command, core::CycleNumber cycle,
+                             bool operating) noexcept {
     // Stopping is never refused.
+    // Who only reads gives no sign of life for what moves.
     switch (command.order) {
         case Order::MachineStop:
             parts_.machineStop.request(StopCause::Command, 0, cycle);
@@ -81,18 +95,27 @@ CommandDesk::Verdict CommandDesk::execute(const ControlCommand& command, core::C
             return {};
         case Order::ProgramStop:
             return stopProgram(command);
+        case Order::Upload:
+            return parts_.bus.begin(command, operating);
         default:
             break;
     }
     lastHeartbeat_ = cycle;
     if (command.order == Order::Heartbeat) return {};
+    if (command.order == Order::Download) return parts_.bus.begin(command, operating);
     if (!operating) return {.refusal = Refusal::NotOperating};
     if (command.order == Order::ResetStop) return resetStop();
     if (command.order == Order::ProgramStart) return startProgram(command);
+    if (command.order == Order::ProgramReset) {
+        if (command.target >= parts_.programs.size()) return {.refusal = Refusal::UnknownTarget};
+        if (parked_) return {.refusal = Refusal::Busy};
+        parked_ = command;
+        return {.pending = true};
+    }
     return commandAxis(command);
 }
 
-CommandDesk::Verdict CommandDesk::commandAxis(const ControlCommand& command) noexcept {
+Verdict CommandDesk::commandAxis(const ControlCommand& command) noexcept {
     if (command.target >= stations_.size()) return {.refusal = Refusal::UnknownTarget};
     const bool finite = std::isfinite(command.distance) && std::isfinite(command.velocity);
     if (!finite) return {.refusal = Refusal::NotFinite};
@@ -105,7 +128,7 @@ CommandDesk::Verdict CommandDesk::commandAxis(const ControlCommand& command) noe
     return {.pending = true};
 }
 
-CommandDesk::Verdict CommandDesk::startProgram(const ControlCommand& command) noexcept {
+Verdict CommandDesk::startProgram(const ControlCommand& command) noexcept {
     if (command.target >= parts_.programs.size()) return {.refusal = Refusal::UnknownTarget};
     ProgramHost& program = parts_.programs[command.target];
     if (program.ended()) return {.refusal = Refusal::ProgramEnded};
@@ -119,7 +142,7 @@ CommandDesk::Verdict CommandDesk::startProgram(const ControlCommand& command) no
     return {};
 }
 
-CommandDesk::Verdict CommandDesk::stopProgram(const ControlCommand& command) noexcept {
+Verdict CommandDesk::stopProgram(const ControlCommand& command) noexcept {
     if (command.target >= parts_.programs.size()) return {.refusal = Refusal::UnknownTarget};
     ProgramHost& program = parts_.programs[command.target];
     if (program.ended()) return {.refusal = Refusal::ProgramEnded};
@@ -127,7 +150,32 @@ CommandDesk::Verdict CommandDesk::stopProgram(const ControlCommand& command) noe
     return {};
 }
 
-CommandDesk::Verdict CommandDesk::resetStop() noexcept {
+/// A fresh instance takes the place of the program, which is then stopped before its first call.
+Verdict CommandDesk::resetProgram(const ControlCommand& command, bool operating) noexcept {
+    ProgramHost& program = parts_.programs[command.target];
+    ProgramHost* const fresh = parts_.stock.take(command.target);
+    if (fresh == nullptr) return {.refusal = Refusal::Busy};
+    std::uint16_t detail = 0;
+    const Refusal refusal = whyNoReset(program, operating, detail);
+    if (refusal == Refusal::None) program.exchange(*fresh, {parts_.axes, parts_.groups});
+    parts_.stock.retire(fresh);
+    return {.refusal = refusal, .detail = detail};
+}
+
+Refusal CommandDesk::whyNoReset(const ProgramHost& program, bool operating,
+                                std::uint16_t& detail) const noexcept {
+    if (!operating) return Refusal::NotOperating;
+    if (program.phase() == ProgramPhase::Abandoned) return Refusal::ProgramLost;
+    if (!program.atRest()) return Refusal::Busy;
+    for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
+        if (!program.uses(i) || !isMoving(parts_.axes[i])) continue;
+        detail = static_cast<std::uint16_t>(i);
+        return Refusal::AxisMoves;
+    }
+    return Refusal::None;
+}
+
+Verdict CommandDesk::resetStop() noexcept {
     if (!parts_.machineStop.active()) return {.refusal = Refusal::NotStopped};
     const auto input = static_cast<std::uint16_t>(parts_.machineStop.activeInput());
     if (!parts_.machineStop.reset(parts_.axes)) {
@@ -159,6 +207,11 @@ void CommandDesk::runStations(core::CycleNumber cycle) noexcept {
         }
         if (answer->ticket != 0) static_cast<void>(parts_.rings.answers.push(*answer));
     }
+}
+
+void CommandDesk::runBus(core::CycleNumber cycle) noexcept {
+    const auto answer = parts_.bus.cycle(cycle);
+    if (answer && answer->ticket != 0) static_cast<void>(parts_.rings.answers.push(*answer));
 }
 
 }  // namespace takt::daemon

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <takt/core/spsc_ring.hpp>
 #include <takt/record/event_log.hpp>
@@ -11,9 +12,11 @@
 
 #include "axes.hpp"
 #include "axis_station.hpp"
+#include "bus_desk.hpp"
 #include "control_command.hpp"
 #include "machine_stop.hpp"
 #include "program_host.hpp"
+#include "program_stock.hpp"
 
 namespace takt::daemon {
 
@@ -39,6 +42,8 @@ public:
         Groups& groups;
         std::span<ProgramHost> programs;
         MachineStop& machineStop;
+        BusDesk& bus;
+        ProgramStock& stock;
         ControlRings& rings;
     };
     /// \param replay commands in the order of their cycles; when there are any, those from the ring
@@ -49,18 +54,13 @@ public:
                 bool record);
 
     /// rt. One cycle, after the programs. \param operating motion may be asked for
-    void cycle(core::CycleNumber cycle, bool operating) noexcept;
+    /// \param allTold nobody outside looks at a program any more that has ended
+    void cycle(core::CycleNumber cycle, bool operating, bool allTold) noexcept;
 
     /// The program that holds the axis; the number of programs when none does.
     [[nodiscard]] std::size_t holderOf(std::size_t axis) const noexcept;
 
 private:
-    struct Verdict {
-        Refusal refusal{Refusal::None};
-        std::uint16_t detail{0};
-        bool pending{false};  ///< the station answers
-    };
-
     void takeAll(core::CycleNumber cycle, bool operating) noexcept;
     void take(const ControlCommand& command, core::CycleNumber cycle, bool operating) noexcept;
     [[nodiscard]] Verdict execute(const ControlCommand& command, core::CycleNumber cycle,
@@ -68,9 +68,15 @@ private:
     [[nodiscard]] Verdict commandAxis(const ControlCommand& command) noexcept;
     [[nodiscard]] Verdict startProgram(const ControlCommand& command) noexcept;
     [[nodiscard]] Verdict stopProgram(const ControlCommand& command) noexcept;
+    [[nodiscard]] Verdict resetProgram(const ControlCommand& command, bool operating) noexcept;
+    [[nodiscard]] Refusal whyNoReset(const ProgramHost& program, bool operating,
+                                     std::uint16_t& detail) const noexcept;
     [[nodiscard]] Verdict resetStop() noexcept;
+    void answer(const ControlCommand& command, const Verdict& verdict,
+                core::CycleNumber cycle) noexcept;
     void letGoAll() noexcept;
     void runStations(core::CycleNumber cycle) noexcept;
+    void runBus(core::CycleNumber cycle) noexcept;
 
     Parts parts_;
     std::deque<AxisStation> stations_;
@@ -80,6 +86,7 @@ private:
     bool record_;
     core::CycleNumber heartbeatLimit_;
     core::CycleNumber lastHeartbeat_{0};
+    std::optional<ControlCommand> parked_;  ///< a reset that waits until all has been told
 };
 
 }  // namespace takt::daemon

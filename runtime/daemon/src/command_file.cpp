@@ -8,13 +8,11 @@
 #include <fstream>
 #include <sstream>
 
+#include "object_text.hpp"
+
 namespace takt::daemon {
 
 namespace {
-
-const std::vector<std::string>& namesOf(OrderTarget target, const ControlNames& names) {
-    return target == OrderTarget::Axis ? names.axes : names.programs;
-}
 
 template <typename T>
 bool parse(const std::string& word, T& value) {
@@ -27,6 +25,19 @@ std::vector<std::string> wordsOf(const std::string& line) {
     std::vector<std::string> words;
     for (std::string word; text >> word;) words.push_back(word);
     return words;
+}
+
+/// "0x6065:0 E8030000 force" behind the device; `next` is then behind that.
+std::string readObject(const std::vector<std::string>& words, std::size_t& next,
+                       ControlCommand& command) {
+    if (words.size() <= next || !parseObject(words[next++], command.object))
+        return "expected: INDEX:SUBINDEX, for example 0x6065:0";
+    if (command.order != Order::Download) return {};
+    if (words.size() <= next || !parseBytes(words[next++], command.value))
+        return "expected: one to eight bytes in hexadecimal, for example E8030000";
+    command.force = words.size() > next && words[next] == "force";
+    if (command.force) ++next;
+    return {};
 }
 
 /// \return what is wrong with the line; empty when it is good
@@ -58,6 +69,10 @@ std::string readLine(const std::vector<std::string>& words, const ControlNames& 
         if (!good) return "expected: distance and velocity";
         next += 2;
     }
+    if (targetOf(*order) == OrderTarget::Device) {
+        if (std::string wrong = readObject(words, next, taken.command); !wrong.empty())
+            return wrong;
+    }
     return words.size() == next ? std::string{} : fmt::format("'{}' is too much", words[next]);
 }
 
@@ -72,6 +87,10 @@ std::string formatCommand(const TakenCommand& taken, const ControlNames& names) 
     }
     if (command.order == Order::Inch)
         line += fmt::format(" {} {}", command.distance, command.velocity);
+    if (targetOf(command.order) == OrderTarget::Device)
+        line += fmt::format(" 0x{:04X}:{}", command.object.index, command.object.subindex);
+    if (command.order == Order::Download)
+        line += fmt::format(" {}{}", formatBytes(command.value), command.force ? " force" : "");
     return line + "\n";
 }
 

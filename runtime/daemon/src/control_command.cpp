@@ -25,6 +25,9 @@ constexpr std::array<OrderInfo, OrderCount> Orders{{
     {"reset-stop", OrderTarget::None},
     {"program-start", OrderTarget::Program},
     {"program-stop", OrderTarget::Program},
+    {"program-reset", OrderTarget::Program},
+    {"upload", OrderTarget::Device},
+    {"download", OrderTarget::Device},
 }};
 
 }  // namespace

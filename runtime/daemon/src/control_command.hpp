@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <takt/axis/error.hpp>
+#include <takt/core/object_access.hpp>
 #include <takt/core/time.hpp>
 
 namespace takt::daemon {
@@ -23,10 +24,13 @@ enum class Order : std::uint8_t {
     ResetStop,
     ProgramStart,  ///< target: program
     ProgramStop,
+    ProgramReset,
+    Upload,  ///< target: device; reads an object
+    Download,
 };
-inline constexpr std::uint8_t OrderCount = 12;
+inline constexpr std::uint8_t OrderCount = 15;
 
-enum class OrderTarget : std::uint8_t { None, Axis, Program };
+enum class OrderTarget : std::uint8_t { None, Axis, Program, Device };
 
 /// "inch"; as it stands in requests and command files.
 [[nodiscard]] std::string_view name(Order order) noexcept;
@@ -36,10 +40,13 @@ enum class OrderTarget : std::uint8_t { None, Axis, Program };
 
 struct ControlCommand {
     Order order{Order::Heartbeat};
-    std::uint16_t target{0};  ///< index of the axis or program
+    std::uint16_t target{0};  ///< index of the axis, program or device
     std::uint64_t ticket{0};  ///< whom to answer; 0 = nobody
     double distance{0.0};     ///< Inch: u, signed
     double velocity{0.0};     ///< Inch: u/s
+    core::ObjectAddress object{};
+    core::ObjectValue value{};  ///< Download
+    bool force{false};          ///< Download: also while a program runs
 };
 
 /// A command and the cycle that took it.
@@ -62,6 +69,10 @@ enum class Refusal : std::uint8_t {
     ProgramEnded,
     ProgramRunning,
     OperatorMoves,  ///< an axis moves for the operator; `detail` is the axis
+    ProgramsRun,    ///< writing might disturb them; `detail` is one of them
+    AxisMoves,      ///< `detail` is the axis
+    ProgramLost,    ///< it was abandoned
+    OfTheCycle,     ///< the object travels with the process data
     Replaying,      ///< a command file is being replayed
 };
 
@@ -74,6 +85,15 @@ struct ControlAnswer {
     Refusal refusal{Refusal::None};
     axis::ErrorId error{axis::ErrorId::None};
     std::uint16_t detail{0};
+    core::ObjectValue value{};   ///< what an upload has read
+    std::uint32_t abortCode{0};  ///< why a device refused; 0 = it did not
+};
+
+/// What a desk says to a command.
+struct Verdict {
+    Refusal refusal{Refusal::None};
+    std::uint16_t detail{0};
+    bool pending{false};  ///< the answer comes later
 };
 
 }  // namespace takt::daemon

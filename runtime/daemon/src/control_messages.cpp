@@ -1,13 +1,12 @@
 #include <array>
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <takt/daemon/control_messages.hpp>
+
+#include "json_members.hpp"
+#include "network_messages.hpp"
 
 namespace takt::daemon {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 5> KindNames{"accepted", "refused", "done", "aborted",
                                                     "failed"};
@@ -24,59 +23,6 @@ std::optional<Json> parseObject(std::string_view line, std::string& error) {
         return std::nullopt;
     }
     return json;
-}
-
-/// Takes the members that are there and have the right type; notes the first that has not.
-class Members {
-public:
-    Members(const Json& json, std::string& error) : json_{json}, error_{error} {}
-
-    void take(const char* key, std::string& value) {
-        if (const Json* found = find(key, &Json::is_string, "a text"))
-            value = found->get<std::string>();
-    }
-    void take(const char* key, double& value) {
-        if (const Json* found = find(key, &Json::is_number, "a number"))
-            value = found->get<double>();
-    }
-    void take(const char* key, bool& value) {
-        if (const Json* found = find(key, &Json::is_boolean, "true or false"))
-            value = found->get<bool>();
-    }
-    void take(const char* key, std::uint64_t& value) {
-        if (const Json* found = find(key, &Json::is_number_unsigned, "a whole number")) {
-            value = found->get<std::uint64_t>();
-        }
-    }
-    void take(const char* key, std::int64_t& value) {
-        if (const Json* found = find(key, &Json::is_number_integer, "a whole number")) {
-            value = found->get<std::int64_t>();
-        }
-    }
-    [[nodiscard]] const Json* array(const char* key) {
-        return find(key, &Json::is_array, "a list");
-    }
-    [[nodiscard]] const Json* object(const char* key) {
-        return find(key, &Json::is_object, "an object");
-    }
-    [[nodiscard]] bool good() const { return error_.empty(); }
-
-private:
-    const Json* find(const char* key, bool (Json::*is)() const noexcept, const char* wanted) {
-        const auto found = json_.find(key);
-        if (found == json_.end()) return nullptr;
-        if (((*found).*is)()) return &*found;
-        if (error_.empty()) error_ = std::string{"\""} + key + "\" must be " + wanted;
-        return nullptr;
-    }
-
-    const Json& json_;
-    std::string& error_;
-};
-
-/// JSON knows no infinity; null says that there is no number.
-Json numberOf(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 Json jsonOf(const AxisReport& axis) {
@@ -238,6 +184,10 @@ std::optional<ControlRequest> parseRequest(std::string_view text, std::string& e
     members.take("program", request.program);
     members.take("distance", request.distance);
     members.take("velocity", request.velocity);
+    members.take("device", request.device);
+    members.take("object", request.object);
+    members.take("data", request.data);
+    members.take("force", request.force);
     members.take("after", request.after);
     members.take("who", request.who);
     if (members.good() && request.verb.empty()) error = "\"do\" is missing";
@@ -251,6 +201,10 @@ std::string encode(const ControlRequest& request) {
     if (!request.program.empty()) json["program"] = request.program;
     if (request.distance != 0.0) json["distance"] = numberOf(request.distance);
     if (request.velocity != 0.0) json["velocity"] = numberOf(request.velocity);
+    if (!request.device.empty()) json["device"] = request.device;
+    if (!request.object.empty()) json["object"] = request.object;
+    if (!request.data.empty()) json["data"] = request.data;
+    if (request.force) json["force"] = true;
     if (request.after != 0) json["after"] = request.after;
     if (!request.who.empty()) json["who"] = request.who;
     return line(json);
@@ -267,11 +221,14 @@ std::optional<ControlReply> parseReply(std::string_view text, std::string& error
     members.take("is", kind);
     members.take("error", reply.error);
     members.take("cycle", reply.cycle);
+    members.take("data", reply.data);
+    members.take("abortCode", reply.abortCode);
     for (std::size_t i = 0; i < KindNames.size(); ++i) {
         if (KindNames[i] == kind) reply.kind = static_cast<ReplyKind>(i);
     }
     if (const Json* status = members.object("status")) reply.status = statusOf(*status, error);
     if (const Json* events = members.array("events")) reply.events = eventsOf(*events, error);
+    if (const Json* network = members.object("network")) reply.network = networkOf(*network, error);
     if (!members.good()) return std::nullopt;
     return reply;
 }
@@ -280,6 +237,9 @@ std::string encode(const ControlReply& reply) {
     Json json{{"id", reply.id}, {"is", KindNames[static_cast<std::size_t>(reply.kind)]}};
     if (!reply.error.empty()) json["error"] = reply.error;
     if (reply.cycle != 0) json["cycle"] = reply.cycle;
+    if (!reply.data.empty()) json["data"] = reply.data;
+    if (reply.abortCode != 0) json["abortCode"] = reply.abortCode;
+    if (reply.network) json["network"] = jsonOf(*reply.network);
     if (reply.status) json["status"] = jsonOf(*reply.status);
     if (reply.events) {
         json["events"] = Json::array();

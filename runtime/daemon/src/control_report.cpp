@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "control_server.hpp"
+#include "network_summary.hpp"
 
 namespace takt::daemon {
 
@@ -39,13 +40,13 @@ GroupReport reportOf(const GroupEntry& entry, const ControlNames& names, std::si
     return report;
 }
 
-ProgramReport reportOf(const ProgramEntry& entry, const ProgramHost& program) {
+ProgramReport reportOf(const ProgramEntry& entry, const std::string& programName,
+                       const std::vector<std::string>& watches) {
     ProgramReport report;
-    report.name = program.name();
+    report.name = programName;
     report.state = name(entry.phase, entry.held);
-    const auto& watched = program.watched();
-    for (std::size_t i = 0; i < watched.size() && i < entry.watches.size(); ++i) {
-        report.watches.push_back({watched[i].name, entry.watches[i]});
+    for (std::size_t i = 0; i < watches.size() && i < entry.watches.size(); ++i) {
+        report.watches.push_back({watches[i], entry.watches[i]});
     }
     return report;
 }
@@ -78,9 +79,18 @@ StatusReport ControlServer::report() const {
         report.groups.push_back(reportOf(board.groups[i].read(), names, i));
     }
     for (std::size_t i = 0; i < board.programs.size(); ++i) {
-        report.programs.push_back(reportOf(board.programs[i].read(), parts_.programs[i]));
+        const ProgramEntry entry = board.programs[i].read();
+        report.programs.push_back(
+            reportOf(entry, names.programs[i], parts_.stock.watchNames(i, entry.instance)));
     }
     return report;
+}
+
+NetworkReport ControlServer::networkReport() const {
+    const DiagnosisBoard& board = parts_.control.diagnosis();
+    std::vector<DeviceEntry> devices;
+    for (const auto& device : board.devices) devices.push_back(device.read());
+    return summarize(parts_.machine, board.run.read(), devices);
 }
 
 std::vector<EventReport> ControlServer::eventsAfter(std::uint64_t number) const {

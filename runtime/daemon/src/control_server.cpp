@@ -9,9 +9,11 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <takt/wire/al_state.hpp>
 #include <utility>
 
 #include "command_file.hpp"
+#include "object_text.hpp"
 #include "realtime_thread.hpp"
 
 namespace takt::daemon {
@@ -22,7 +24,6 @@ using namespace std::chrono_literals;
 
 /// The cycle cannot wake this thread without a system call, so it looks for answers by itself.
 constexpr std::chrono::milliseconds LookAfter = 5ms;
-constexpr std::size_t MostTickets = 256;
 
 ReplyKind kindOf(AnswerKind kind) noexcept {
     return static_cast<ReplyKind>(kind);
@@ -34,10 +35,6 @@ void blockSignals() {
     sigset_t all;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, nullptr);
-}
-
-std::uint16_t indexOf(const std::vector<std::string>& names, const std::string& name) {
-    return static_cast<std::uint16_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 }  // namespace
@@ -72,13 +69,17 @@ void ControlServer::serve() {
     blockSignals();
     while (!ending_) {
         waitForClients();
+        takePrepared();
         takeAnswers();
+        answerInquiries();
+        parts_.stock.clear();
         takeEvents();
         takeCommands();
         watchOwner();
         sendAll();
         dropGone();
     }
+    if (preparation_) preparation_->thread.join();
     takeAnswers();
     takeEvents();
     sendAll();
@@ -148,12 +149,21 @@ void ControlServer::handle(std::uint64_t number, Client& client, std::string_vie
     const auto request = parseRequest(line, error);
     if (!request) return refuse(client, {}, std::move(error));
     if (!request->who.empty()) client.who = request->who.substr(0, 32);
+    const bool stops = request->verb == name(Order::MachineStop) ||
+                       request->verb == name(Order::Halt) || request->verb == name(Order::Leave);
+    if (!client.rate.take(std::chrono::steady_clock::now()) && !stops) {
+        return refuse(
+            client, *request,
+            fmt::format("too many requests; allowed: {:.0f} in a second", MostRequestsPerSecond));
+    }
     ControlReply reply{.id = request->id};
     if (request->verb == "status") {
         reply.status = report();
     } else if (request->verb == "events") {
         takeEvents();
         reply.events = eventsAfter(request->after);
+    } else if (request->verb == "network") {
+        return inquire(number, client, *request);
     } else {
         return order(number, client, *request);
     }
@@ -165,59 +175,24 @@ void ControlServer::refuse(Client& client, const ControlRequest& request, std::s
         encode(ControlReply{.id = request.id, .kind = ReplyKind::Refused, .error = std::move(why)});
 }
 
-void ControlServer::order(std::uint64_t number, Client& client, const ControlRequest& request) {
-    ControlCommand command;
-    if (std::string why = commandOf(request, command); !why.empty())
-        return refuse(client, request, why);
-    const bool isHeartbeat = command.order == Order::Heartbeat;
-    // A heartbeat of somebody who does not operate means nothing; anybody may stop the machine.
-    if (isHeartbeat && owner_ != number) return;
-    if (command.order != Order::MachineStop) {
-        if (std::string why = claim(number, client); !why.empty())
-            return refuse(client, request, why);
-    }
-    if (!isHeartbeat) {
-        if (tickets_.size() >= MostTickets)
-            return refuse(client, request, "too many commands at once");
-        command.ticket = ++lastTicket_;
-        tickets_[command.ticket] = {number, request.id, command.order, command.target};
-    }
-    if (parts_.control.rings().commands.push(command) || isHeartbeat) return;
-    tickets_.erase(command.ticket);
-    refuse(client, request, "busy: the machine has not yet taken the commands before");
+void ControlServer::inquire(std::uint64_t number, Client& client, const ControlRequest& request) {
+    const RunPhase phase = parts_.control.board().run.read().phase;
+    if (phase == RunPhase::BringUp || phase == RunPhase::Over)
+        return refuse(client, request, "no cycle runs: the network is brought up, or the run ends");
+    if (inquiries_.size() >= MostClients) return refuse(client, request, "too many at once");
+    inquiries_.push_back({number, request.id, parts_.control.diagnosis().ask()});
 }
 
-/// \return why there is no such command; empty when there is
-std::string ControlServer::commandOf(const ControlRequest& request, ControlCommand& command) const {
-    const auto order = orderOf(request.verb);
-    if (!order) return fmt::format("there is no request '{}'", request.verb);
-    const ControlNames& names = parts_.control.names();
-    command.order = *order;
-    command.distance = request.distance;
-    command.velocity = request.velocity;
-    const bool ofAxis = targetOf(*order) == OrderTarget::Axis;
-    if (targetOf(*order) == OrderTarget::None) return {};
-    const auto& known = ofAxis ? names.axes : names.programs;
-    const std::string& wanted = ofAxis ? request.axis : request.program;
-    command.target = indexOf(known, wanted);
-    if (command.target < known.size()) return {};
-    return fmt::format("there is no {} '{}'; allowed: {}", ofAxis ? "axis" : "program", wanted,
-                       fmt::join(known, ", "));
-}
-
-/// Makes the client the owner, or says who is.
-std::string ControlServer::claim(std::uint64_t number, const Client& client) {
-    const auto now = std::chrono::steady_clock::now();
-    if (owner_ != 0 && owner_ != number) {
-        if (now - ownerSeen_ <= OwnerTime)
-            return fmt::format("the machine is operated by {}", ownerName());
-        leave();
-    }
-    if (leavePending_) return "busy: the operator before has just left";
-    static_cast<void>(client);
-    owner_ = number;
-    ownerSeen_ = now;
-    return {};
+void ControlServer::answerInquiries() {
+    std::erase_if(inquiries_, [this](const Inquiry& inquiry) {
+        const auto client = clients_.find(inquiry.client);
+        if (client == clients_.end()) return true;
+        if (!parts_.control.diagnosis().shown(inquiry.number)) return false;
+        ControlReply reply{.id = inquiry.request};
+        reply.network = networkReport();
+        client->second.unsent += encode(reply);
+        return true;
+    });
 }
 
 void ControlServer::takeAnswers() {
@@ -231,6 +206,12 @@ void ControlServer::takeAnswers() {
         if (client == clients_.end()) continue;
         ControlReply reply{
             .id = ticket.request, .kind = kindOf(answer.kind), .error = {}, .cycle = answer.cycle};
+        reply.data = formatBytes(answer.value);
+        reply.abortCode = answer.abortCode;
+        if (answer.abortCode != 0) {
+            reply.error =
+                fmt::format("0x{:08X} {}", answer.abortCode, wire::explainAbort(answer.abortCode));
+        }
         if (answer.error != axis::ErrorId::None) {
             const axis::ErrorInfo& info = axis::errorInfo(answer.error);
             reply.error = fmt::format("{}: {} {}", info.name, info.text, info.remedy);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "machine_control.hpp"
+#include "rate_limit.hpp"
 
 namespace takt::daemon {
 
@@ -32,10 +33,12 @@ public:
     static constexpr std::size_t MostUnsent =
         1U << 20U;  ///< then a client that does not read is dropped
     static constexpr std::size_t KeptEvents = 2000;
+    /// Of one client; then its requests are refused, but never a stop.
+    static constexpr double MostRequestsPerSecond = 500;
 
     struct Parts {
         const config::MachineConfig& machine;
-        std::span<const ProgramHost> programs;  ///< their lists of watches; not their state
+        ProgramStock& stock;
         MachineControl& control;
     };
     /// Opens the socket and begins to serve. \param commandFile taken commands are written there;
@@ -59,12 +62,26 @@ private:
         std::string received;
         std::string unsent;
         bool gone{false};
+        RateLimit rate{MostRequestsPerSecond, std::chrono::steady_clock::now()};
     };
     struct Ticket {
         std::uint64_t client{0};
         std::uint64_t request{0};
         Order order{};
         std::uint16_t target{0};
+    };
+    /// Who waits for a diagnosis to be shown.
+    struct Inquiry {
+        std::uint64_t client{0};
+        std::uint64_t request{0};
+        std::uint32_t number{0};
+    };
+    /// A fresh program that a thread of its own makes ready: its start may take its time.
+    struct Preparation {
+        ControlCommand command{};
+        std::thread thread;
+        std::vector<std::string> problems;
+        std::atomic<bool> over{false};
     };
     using Time = std::chrono::steady_clock::time_point;
 
@@ -76,8 +93,14 @@ private:
     void order(std::uint64_t number, Client& client, const ControlRequest& request);
     [[nodiscard]] std::string commandOf(const ControlRequest& request,
                                         ControlCommand& command) const;
+    [[nodiscard]] std::string targetOf(const ControlRequest& request,
+                                       ControlCommand& command) const;
     [[nodiscard]] std::string claim(std::uint64_t number, const Client& client);
     void refuse(Client& client, const ControlRequest& request, std::string why);
+    void prepareProgram(const ControlCommand& command);
+    void takePrepared();
+    void inquire(std::uint64_t number, Client& client, const ControlRequest& request);
+    void answerInquiries();
     void takeAnswers();
     void takeEvents();
     void takeCommands();
@@ -86,6 +109,7 @@ private:
     void dropGone();
     void leave();
     [[nodiscard]] StatusReport report() const;
+    [[nodiscard]] NetworkReport networkReport() const;
     [[nodiscard]] std::vector<EventReport> eventsAfter(std::uint64_t number) const;
     [[nodiscard]] double secondsOf(core::CycleNumber cycle) const;
     [[nodiscard]] std::string ownerName() const;
@@ -96,6 +120,8 @@ private:
     std::map<std::uint64_t, Client> clients_;
     std::uint64_t lastClient_{0};
     std::map<std::uint64_t, Ticket> tickets_;
+    std::vector<Inquiry> inquiries_;
+    std::unique_ptr<Preparation> preparation_;
     std::uint64_t lastTicket_{0};
     std::uint64_t owner_{0};  ///< 0 = nobody
     Time ownerSeen_{};

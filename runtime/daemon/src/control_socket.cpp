@@ -159,15 +159,20 @@ Peer peerOf(int connection) noexcept {
     socklen_t size = sizeof(credentials);
     if (::getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0) return {};
     Peer peer{.pid = credentials.pid};
-    peer.allowed =
-        credentials.uid == ::geteuid() || credentials.uid == 0 || credentials.gid == ::getegid();
-    if (peer.allowed) return peer;
     std::array<gid_t, 256> groups{};
     size = sizeof(groups);
-    if (::getsockopt(connection, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) != 0) return peer;
-    const auto end = groups.begin() + static_cast<std::ptrdiff_t>(size / sizeof(gid_t));
-    peer.allowed = std::find(groups.begin(), end, ::getegid()) != end;
+    if (::getsockopt(connection, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) != 0) size = 0;
+    peer.allowed = mayConnect(
+        {credentials.uid, credentials.gid},
+        std::span<const gid_t>{groups}.first(std::min(size / sizeof(gid_t), groups.size())),
+        {::geteuid(), ::getegid()});
     return peer;
+}
+
+bool mayConnect(const Identity& other, std::span<const unsigned> groups,
+                const Identity& own) noexcept {
+    return other.user == own.user || other.user == 0 || other.group == own.group ||
+           std::find(groups.begin(), groups.end(), own.group) != groups.end();
 }
 
 }  // namespace takt::daemon

@@ -2,9 +2,7 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <takt/record/histogram.hpp>
-#include <vector>
 
 namespace takt::daemon {
 
@@ -14,13 +12,11 @@ inline constexpr std::size_t CycleParts = 4;
 
 /// How the cycles of a run on a real clock kept their time. Plain data; written by the cycle.
 struct CycleStatistics {
-    record::Histogram lateness;   ///< ns from the planned wake-up to the real one
-    record::Histogram reply;      ///< ns from the wake-up until the replies were there
-    record::Histogram execution;  ///< ns from the wake-up to the end of the cycle
+    record::Histogram lateness;    ///< ns from the planned wake-up to the real one
+    record::Histogram reply;       ///< ns from the wake-up until the replies were there
+    record::Histogram execution;   ///< ns from the wake-up to the end of the cycle
+    record::Histogram phaseError;  ///< ns off the SYNC0 grid, either way, while locked
     std::array<std::uint64_t, CycleParts> missedBy{};  ///< late cycles by what made them so
 };
-
-/// For people: a summary of the three times and their distribution, line by line.
-[[nodiscard]] std::vector<std::string> describe(const CycleStatistics& statistics);
 
 }  // namespace takt::daemon

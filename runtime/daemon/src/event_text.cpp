@@ -36,15 +36,14 @@ std::string nameIn(const std::vector<std::string>& names, std::size_t index) {
 }
 
 std::string targetName(Order order, std::uint16_t target, const ControlNames& names) {
-    switch (targetOf(order)) {
-        case OrderTarget::None:
-            return {};
-        case OrderTarget::Axis:
-            return " " + nameIn(names.axes, target);
-        case OrderTarget::Program:
-            return " " + nameIn(names.programs, target);
-    }
-    return {};
+    if (targetOf(order) == OrderTarget::None) return {};
+    return " " + nameIn(namesOf(targetOf(order), names), target);
+}
+
+std::string busyText(OrderTarget target) {
+    if (target == OrderTarget::Device) return "too many objects are asked for at once";
+    if (target == OrderTarget::Program) return "its last call, or its last reset, is not over yet";
+    return "the last command for this axis still runs";
 }
 
 axis::ErrorRecord errorOf(const record::Event& event) noexcept {
@@ -65,6 +64,10 @@ std::string textOfCommand(const record::Event& event, const ControlNames& names)
         const auto detail = static_cast<std::uint16_t>(event.numbers[3]);
         return fmt::format("{} refused: {}", words,
                            explain(as<Refusal>(event.numbers[2]), order, target, detail, names));
+    }
+    if (targetOf(order) == OrderTarget::Device) {
+        words += fmt::format(" 0x{:04X}:{}", static_cast<unsigned>(event.numbers[2]),
+                             static_cast<unsigned>(event.numbers[3]));
     }
     if (order == Order::Inch) {
         const std::string unit = nameIn(names.units, target);
@@ -106,9 +109,13 @@ record::Event machineStopReset(core::CycleNumber cycle) noexcept {
     return event(cycle, EventId::MachineStopReset, 0);
 }
 record::Event commandTaken(core::CycleNumber cycle, const ControlCommand& command) noexcept {
-    return event(cycle, EventId::CommandTaken, 0,
-                 {number(command.order), static_cast<double>(command.target), command.distance,
-                  command.velocity});
+    std::array<double, 4> numbers{number(command.order), static_cast<double>(command.target),
+                                  command.distance, command.velocity};
+    if (targetOf(command.order) == OrderTarget::Device) {
+        numbers[2] = static_cast<double>(command.object.index);
+        numbers[3] = static_cast<double>(command.object.subindex);
+    }
+    return event(cycle, EventId::CommandTaken, 0, numbers);
 }
 record::Event commandRefused(core::CycleNumber cycle, const ControlCommand& command,
                              Refusal refusal, std::uint16_t detail) noexcept {
@@ -122,6 +129,11 @@ record::Event stationFailed(core::CycleNumber cycle, std::uint16_t axis,
 }
 record::Event operatorLost(core::CycleNumber cycle, std::uint16_t axis) noexcept {
     return event(cycle, EventId::OperatorLost, axis);
+}
+
+const std::vector<std::string>& namesOf(OrderTarget target, const ControlNames& names) noexcept {
+    if (target == OrderTarget::Axis) return names.axes;
+    return target == OrderTarget::Program ? names.programs : names.devices;
 }
 
 const char* name(ProgramPhase phase, bool held) noexcept {
@@ -158,7 +170,7 @@ std::string explain(Refusal refusal, Order order, std::uint16_t target, std::uin
                 "axis{} is held by program '{}'; do: stop the program, or run with --manual",
                 targetName(order, target, names), nameIn(names.programs, detail));
         case Refusal::Busy:
-            return "the last command for this axis still runs";
+            return busyText(targetOf(order));
         case Refusal::Block:
             return "the block refused it";
         case Refusal::StopActive:
@@ -172,6 +184,17 @@ std::string explain(Refusal refusal, Order order, std::uint16_t target, std::uin
             return "the program runs already";
         case Refusal::OperatorMoves:
             return fmt::format("axis {} moves for the operator", nameIn(names.axes, detail));
+        case Refusal::ProgramsRun:
+            return fmt::format(
+                "program '{}' runs, and a written object may disturb it; do: stop it first, or "
+                "write with --force",
+                nameIn(names.programs, detail));
+        case Refusal::AxisMoves:
+            return fmt::format("axis {} moves; do: stop it first", nameIn(names.axes, detail));
+        case Refusal::ProgramLost:
+            return "the program was abandoned, and its thread is lost; do: end the run";
+        case Refusal::OfTheCycle:
+            return "the cycle writes this object with the process data";
         case Refusal::Replaying:
             return "a command file is being replayed";
     }

@@ -62,8 +62,12 @@ struct ControlNames {
     std::vector<std::string> groupUnits;  ///< of path length
     std::vector<std::string> programs;
     std::vector<std::string> stopInputs;
+    std::vector<std::string> devices;
 };
 
+/// The names among which an order's target stands. \pre the order has a target
+[[nodiscard]] const std::vector<std::string>& namesOf(OrderTarget target,
+                                                      const ControlNames& names) noexcept;
 [[nodiscard]] const char* name(ProgramPhase phase, bool held) noexcept;
 /// "axis X is held by program 'pick'; do: …"
 [[nodiscard]] std::string explain(Refusal refusal, Order order, std::uint16_t target,

@@ -76,7 +76,9 @@ std::optional<LoadedMachine> loadMachine(const RunOptions& options,
     checkLoad(machine.config, problems);
     makeAxes(machine.config, machine.axes);
     makeGroups(machine.config, machine.axes, machine.groups);
-    machine.programs = loadPrograms(machine.config, std::move(linked), problems);
+    LoadedPrograms programs = loadPrograms(machine.config, std::move(linked), problems);
+    machine.programs = std::move(programs.hosts);
+    machine.factories = std::move(programs.factories);
     for (ProgramHost& program : machine.programs) {
         for (const std::string& text : program.start(machine.config)) {
             problems.push_back(fmt::format("{}: error: {}", program.origin(), text));

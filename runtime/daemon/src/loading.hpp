@@ -18,7 +18,8 @@ struct LoadedMachine {
     Axes axes;
     Groups groups;
     std::vector<ProgramHost> programs;
-    std::vector<TakenCommand> commands;  ///< to be replayed
+    std::vector<ProgramFactory> factories;  ///< of the programs
+    std::vector<TakenCommand> commands;     ///< to be replayed
 };
 
 /// Reads the machine file and all it names, loads the programs and lets each one start. Everything

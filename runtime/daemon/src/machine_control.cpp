@@ -56,6 +56,7 @@ ControlNames controlNames(const config::MachineConfig& machine,
     }
     for (const ProgramHost& program : programs) names.programs.push_back(program.name());
     for (const auto& input : machine.machineStop.inputs) names.stopInputs.push_back(input.name);
+    for (const auto& slave : machine.network.slaves) names.devices.push_back(slave.name);
     return names;
 }
 
@@ -63,9 +64,11 @@ MachineControl::MachineControl(const Parts& parts, std::vector<TakenCommand> rep
     : parts_{parts},
       names_{controlNames(parts.machine, parts.programs)},
       board_{parts.axes.size(), parts.groups.size(), parts.programs.size()},
+      diagnosis_{parts.machine.network.slaves.size()},
       stop_{parts.machine.machineStop, parts.machine.network.cycle,
-            bindInputs(parts.machine, parts.master)},
-      desk_{{parts.axes, parts.groups, parts.programs, stop_, rings_},
+            bindInputs(parts.machine, parts.master), parts.axes.size()},
+      bus_{{parts.machine.network, parts.machine.axes, parts.master, parts.axes, parts.programs}},
+      desk_{{parts.axes, parts.groups, parts.programs, stop_, bus_, parts.stock, rings_},
             parts.machine.network.cycle,
             std::move(replay),
             record} {
@@ -84,7 +87,7 @@ void MachineControl::beforePrograms(core::CycleNumber cycle, const CycleOrders& 
 void MachineControl::afterPrograms(core::CycleNumber cycle, const CycleOrders& orders) noexcept {
     takeWishes(cycle);
     if (stop_.onFault()) watchFaults(cycle);
-    desk_.cycle(cycle, orders.operating);
+    desk_.cycle(cycle, orders.operating, orders.allTold);
     stop_.act(cycle, parts_.axes);
     if (!orders.stopAxes) return;
     for (axis::Axis& axis : parts_.axes) axis.machineStop();
@@ -137,7 +140,8 @@ void MachineControl::publishStatus(core::CycleNumber cycle, const CycleOrders& o
     }
     for (std::size_t i = 0; i < parts_.programs.size(); ++i) {
         const ProgramHost& program = parts_.programs[i];
-        ProgramEntry entry{program.phase(), program.held(), program.endCycle(), {}};
+        ProgramEntry entry{
+            program.phase(), program.held(), program.instance(), program.endCycle(), {}};
         const auto& watched = program.watched();
         const std::size_t count =
             program.atRest() ? std::min(watched.size(), entry.watches.size()) : 0;

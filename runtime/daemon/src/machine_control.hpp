@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "axes.hpp"
+#include "bus_desk.hpp"
 #include "command_desk.hpp"
 #include "control_command.hpp"
+#include "diagnosis_board.hpp"
 #include "event_text.hpp"
 #include "machine_stop.hpp"
 #include "program_host.hpp"
@@ -19,6 +21,7 @@ namespace takt::daemon {
 struct CycleOrders {
     bool runPrograms{false};
     bool operating{false};  ///< commands and stop inputs count
+    bool allTold{true};     ///< what was noted of programs has been put into words
     bool stopAxes{false};   ///< the run ends: every axis ramps down and is switched off
     RunPhase phase{RunPhase::GoingOp};
 };
@@ -32,6 +35,7 @@ public:
         Axes& axes;
         Groups& groups;
         std::span<ProgramHost> programs;
+        ProgramStock& stock;
     };
     /// \param replay commands of a file, in the order of their cycles
     /// \param record what is taken goes into the ring for the command file
@@ -44,6 +48,7 @@ public:
 
     [[nodiscard]] ControlRings& rings() noexcept { return rings_; }
     [[nodiscard]] const StatusBoard& board() const noexcept { return board_; }
+    [[nodiscard]] DiagnosisBoard& diagnosis() noexcept { return diagnosis_; }
     [[nodiscard]] const ControlNames& names() const noexcept { return names_; }
     [[nodiscard]] const MachineStop& machineStop() const noexcept { return stop_; }
 
@@ -71,7 +76,9 @@ private:
     ControlNames names_;
     ControlRings rings_;
     StatusBoard board_;
+    DiagnosisBoard diagnosis_;
     MachineStop stop_;
+    BusDesk bus_;
     CommandDesk desk_;
     Seen seen_;
 };

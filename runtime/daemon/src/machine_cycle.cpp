@@ -10,6 +10,7 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
     parts_.master.exchange(beat.number);
     const core::HostTime replied = parts_.clock.now();
     followReferenceClock(beat);
+    if (beat.skipped > 0) passOver(beat);
     const Movers& movers = parts_.movers;
     for (axis::Axis& axis : movers.axes) axis.readInputs(beat.number);
     for (axis::Group& group : movers.groups) group.readMembers(beat.number);
@@ -28,6 +29,16 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
     keepBooks(beat, replied, computed);
 }
 
+/// Lost set-points are those of the cycles that were missed, so they come before this one's inputs.
+void MachineCycle::passOver(const scheduler::Beat& beat) noexcept {
+    for (std::uint32_t i = beat.madeUpFor; i > 0; --i) {
+        for (axis::Group& group : parts_.movers.groups) group.missCycle();
+        for (axis::Axis& axis : parts_.movers.axes) axis.missCycle();
+        parts_.recorders.row(beat.number - i, parts_.movers);
+    }
+    for (axis::Axis& axis : parts_.movers.axes) axis.standFor(beat.skipped - beat.madeUpFor);
+}
+
 void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {
     const fieldbus::ethercat::DcSample sample = parts_.master.dcSample();
     if (!sample.valid) {
@@ -43,7 +54,7 @@ void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {
     parts_.grid.shift(parts_.dcLock.update(error));
     parts_.master.setClockLocked(parts_.dcLock.locked());
     if (parts_.dcLock.locked()) {
-        worstPhaseError_ = std::max(worstPhaseError_, std::chrono::abs(error));
+        statistics_.phaseError.add(std::chrono::abs(error).count());
     }
 }
 

@@ -34,10 +34,10 @@ public:
     /// rt. The whole cycle of one wake-up.
     void run(const scheduler::Beat& beat, const CycleOrders& orders) noexcept;
 
-    [[nodiscard]] core::Duration worstPhaseError() const noexcept { return worstPhaseError_; }
     [[nodiscard]] const CycleStatistics& statistics() const noexcept { return statistics_; }
 
 private:
+    void passOver(const scheduler::Beat& beat) noexcept;
     void followReferenceClock(const scheduler::Beat& beat) noexcept;
     void keepBooks(const scheduler::Beat& beat, core::HostTime replied,
                    core::HostTime computed) noexcept;
@@ -45,7 +45,6 @@ private:
     Parts parts_;
     CycleStatistics statistics_;
     CyclePart longest_{CyclePart::Host};  ///< what made the last cycle too long; Host: it was not
-    core::Duration worstPhaseError_{0};   ///< while locked
 };
 
 }  // namespace takt::daemon

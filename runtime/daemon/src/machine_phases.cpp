@@ -12,12 +12,27 @@ using fieldbus::ethercat::NetworkState;
 void MachineRun::oneCycle() noexcept {
     const scheduler::Beat beat = grid_.wait(bus_.clock());
     bus_.beginCycle(beat.number);
+    orders_.allTold = told_.load(std::memory_order_acquire) == noted_;
     cycle_.run(beat, orders_);
     doJobs();
     now_ = beat.number + 1;
     const core::CycleGuard guard;
     superviseOverruns(beat);
     supervise();
+    if (control_.diagnosis().wanted()) control_.diagnosis().show(diagnosis(), bus_.master());
+}
+
+DiagnosisEntry MachineRun::diagnosis() const noexcept {
+    return {.cycle = now_,
+            .statistics = cycle_.statistics(),
+            .lateWakeUps = overruns_.overruns(),
+            .missedCycles = overruns_.skipped(),
+            .relocks = dcLock_.relocks(),
+            .clockLocked = dcLock_.locked(),
+            .driftPpm = dcLock_.driftPpm(),
+            .network = bus_.master().state(),
+            .problem = bus_.master().problemRecord(),
+            .counters = bus_.master().counters()};
 }
 
 /// Jobs: in virtual time between the cycles, on a machine on a thread of their own.
@@ -152,19 +167,24 @@ void MachineRun::enter(Phase phase) noexcept {
 
 void MachineRun::fail(ExitCode code, RunNotice::Kind kind, std::size_t index) noexcept {
     note(kind, index, overruns_.inRow());
-    if (code_ == ExitCode::Good) code_ = code;
+    // What does not stop is worse than all else.
+    if (code_ == ExitCode::Good || code == ExitCode::StopTimeout) code_ = code;
 }
 
 void MachineRun::note(RunNotice::Kind kind, std::size_t index, std::uint64_t number) noexcept {
-    notices_.push(
-        {.kind = kind, .index = index, .cycle = now_, .time = inPhase(), .number = number});
+    send({.kind = kind, .index = index, .cycle = now_, .time = inPhase(), .number = number});
+}
+
+void MachineRun::send(const RunNotice& notice) noexcept {
+    if (notices_.push(notice)) ++noted_;
 }
 
 void MachineRun::noteEndedPrograms() noexcept {
     for (std::size_t i = 0; i < programs_.size(); ++i) {
         const ProgramPhase phase = programs_[i].phase();
-        if (!programs_[i].ended() || noted_[i]) continue;
-        noted_[i] = true;
+        const bool known = endNoted_[i];
+        endNoted_[i] = programs_[i].ended();  // a program that was reset may end again
+        if (known || !endNoted_[i]) continue;
         note(RunNotice::Kind::ProgramEnded, i);
         if (phase == ProgramPhase::Finished || code_ != ExitCode::Good) continue;
         code_ =
@@ -174,11 +194,16 @@ void MachineRun::noteEndedPrograms() noexcept {
 
 void MachineRun::noteMachineStop() noexcept {
     const MachineStop& stop = control_.machineStop();
+    for (std::size_t i = 0; i < overdueNoted_.size(); ++i) {
+        if (stop.overdue(i) && !overdueNoted_[i])
+            fail(ExitCode::StopTimeout, RunNotice::Kind::MachineStopOverdue, i);
+        overdueNoted_[i] = stop.overdue(i);
+    }
     if (stop.active() == stopNoted_) return;
     stopNoted_ = stop.active();
     const auto kind =
         stopNoted_ ? RunNotice::Kind::MachineStopped : RunNotice::Kind::MachineStopReset;
-    notices_.push({.kind = kind, .cycle = now_, .stop = stop.record()});
+    send({.kind = kind, .cycle = now_, .stop = stop.record()});
 }
 
 core::Duration MachineRun::inPhase() const noexcept {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <takt/fieldbus/bus_timing.hpp>
 #include <thread>
 #include <utility>
 
@@ -24,8 +25,9 @@ double seconds(core::Duration duration) {
 }
 
 std::unique_ptr<BusEnd> endFor(const RunOptions& options, const config::MachineConfig& machine) {
-    return options.interface.empty() ? simulatedEnd(machine)
-                                     : interfaceEnd(machine, options.interface);
+    if (options.interface.empty()) return simulatedEnd(machine);
+    // One more than the cycle needs: what answers late must not keep a reply out.
+    return interfaceEnd(options.interface, fieldbus::computeTiming(machine.network).frames + 1);
 }
 
 /// A real computer sends a little later or earlier each time; a lock that waits for the precision
@@ -40,6 +42,13 @@ scheduler::DcLockParams lockFor(const RunOptions& options, const config::Machine
     const auto inTenth = static_cast<std::uint32_t>(100ms / machine.network.cycle);
     params.windowCycles = std::clamp(inTenth, fewest, params.windowCycles);
     return params;
+}
+
+/// Missed cycles that the motion makes up for: fewer than stop the machine, and no more than frames
+/// may be lost in a row, because for the drives it is the same.
+std::uint32_t bridgeable(const config::MachineConfig& machine) {
+    const std::uint32_t stopAfter = machine.scheduler.overruns.stopAfter;
+    return std::min(stopAfter > 0 ? stopAfter - 1 : 0, machine.network.lostLimit);
 }
 
 /// The share of the cycle that each program gets: half of it for all together, unless one was given
@@ -66,15 +75,17 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       axes_{machine.axes},
       groups_{machine.groups},
       programs_{machine.programs},
-      noted_(programs_.size(), false),
+      endNoted_(programs_.size(), false),
+      overdueNoted_(axes_.size(), false),
       bus_{machine_, endFor(options, machine_), recorders.capture()},
       dcLock_{lockFor(options, machine_), machine_.network.cycle},
       grid_{core::HostTime{}, machine_.network.cycle},
       overruns_{machine_.scheduler.overruns},
-      control_{{machine_, bus_.master(), axes_, groups_, programs_},
+      stock_{programs_, machine.factories, machine_},
+      control_{{machine_, bus_.master(), axes_, groups_, programs_, stock_},
                machine.commands,
                !options.recordCommands.empty()},
-      server_{{machine_, programs_, control_}, options.socket, options.recordCommands},
+      server_{{machine_, stock_, control_}, options.socket, options.recordCommands},
       cycle_{{bus_.master(),
               {axes_, groups_},
               programs_,
@@ -89,6 +100,11 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       reporter_{machine_, programs_, bus_.master(), control_.names(), console},
       routes_{machine_, axes_, programs_} {
     attachAxes(machine_, bus_.master(), axes_);
+    for (const TakenCommand& taken : machine.commands) {
+        if (taken.command.order != Order::ProgramReset) continue;
+        for (const std::string& problem : stock_.prepare(taken.command.target))
+            throw std::runtime_error{fmt::format("{}: {}", options.commands.string(), problem)};
+    }
 }
 
 int MachineRun::execute() {
@@ -104,19 +120,21 @@ int MachineRun::execute() {
 }
 
 bool MachineRun::bringUp() {
-    console_.line(fmt::format("{}: {} devices, {} axes, cycle {} us{}{}", machine_.name,
+    console_.line(fmt::format("{}: {} devices, {} axes, cycle {} us, {}{}", machine_.name,
                               machine_.network.slaves.size(), axes_.size(),
                               machine_.network.cycle.count() / 1000,
-                              onMachine() ? ", interface " : "", options_.interface));
+                              onMachine() ? "interface " : "simulated", options_.interface));
     if (options_.socket.empty() && server_.path().filename() != machine_.name + ".sock") {
         console_.line(
             fmt::format("control socket {}, since another takt runs a machine of this name",
                         server_.path().string()));
     }
-    const auto problems = bus_.master().bringUp([this](std::string_view text) {
-        recorders_.drain();
-        console_.progress(text);
-    });
+    const auto problems = bus_.master().bringUp(
+        [this](std::string_view text) {
+            recorders_.drain();
+            console_.progress(text);
+        },
+        [this] { return stop_.count() == 0; });
     recorders_.drain();
     for (const auto& problem : problems) {
         console_.error(fmt::format(
@@ -129,7 +147,8 @@ bool MachineRun::bringUp() {
 /// Directly before the first cycle.
 void MachineRun::begin() {
     const core::HostTime soon = bus_.clock().now() + machine_.network.cycle;
-    grid_ = scheduler::Grid{bus_.master().firstSend(soon), machine_.network.cycle};
+    grid_ = scheduler::Grid{bus_.master().firstSend(soon), machine_.network.cycle,
+                            bridgeable(machine_)};
     bus_.master().prepare();
     bus_.master().requestOp();
     enter(Phase::GoingOp);
@@ -213,16 +232,23 @@ void MachineRun::runOnThreads() {
 /// changes it.
 void MachineRun::keepHouse(bool cycleRests) {
     RunNotice notice;
-    while (notices_.pop(notice)) heldBack_.push_back(notice);
+    std::uint64_t taken = 0;
+    for (; notices_.pop(notice); ++taken) heldBack_.push_back(notice);
     std::erase_if(heldBack_, [this, cycleRests](const RunNotice& held) {
         const bool ofNetwork =
             held.kind == RunNotice::Kind::NetworkFailed || held.kind == RunNotice::Kind::OpTimedOut;
         if (ofNetwork && !cycleRests) return false;
         reporter_.tell(held);
+        if (held.kind == RunNotice::Kind::ReachedOp)
+            service_.ready(machine_.name + " in operation");
         return true;
     });
+    told_.fetch_add(taken, std::memory_order_release);
     recorders_.drain();
     reporter_.progress(control_.board());
+    const RunEntry run = control_.board().run.read();
+    if (run.phase > RunPhase::Operating) service_.stopping();
+    service_.alive(run.cycle);
 }
 
 void MachineRun::conclude() {
@@ -235,31 +261,30 @@ void MachineRun::conclude() {
         code_ = ExitCode::MachineFault;
     const double simulated = static_cast<double>(now_) * seconds(machine_.network.cycle);
     const double wall = seconds(pace_.elapsed());
-    const auto counters = bus_.master().counters();
-    console_.line(fmt::format(
-        "{:.3f} s in {} cycles, {:.1f} times real time; frames {} sent, {} lost, {} late; "
-        "working counter errors {}; largest DC phase error {} ns, controller's clock {:+.1f} ppm "
-        "against the reference",
-        simulated, now_, wall > 0 ? simulated / wall : 0.0, counters.framesSent,
-        counters.framesLost, counters.framesLate, counters.workingCounterErrors,
-        cycle_.worstPhaseError().count(), dcLock_.driftPpm()));
-    if (onMachine()) tellStatistics();
-}
-
-void MachineRun::tellStatistics() {
-    const CycleStatistics& statistics = cycle_.statistics();
-    console_.line(fmt::format(
-        "missed cycles {}, in {} late wake-ups: {} by the host, {} by the bus, {} by programs, {} "
-        "by "
-        "axes; DC lock lost {} times",
-        overruns_.skipped(), overruns_.overruns(), statistics.missedBy[0], statistics.missedBy[1],
-        statistics.missedBy[2], statistics.missedBy[3], dcLock_.relocks()));
-    for (const std::string& line : describe(statistics)) console_.line(line);
+    const NetworkReport network = networkReport();
+    console_.line(fmt::format("{:.3f} s in {} cycles, {:.1f} times real time; {}", simulated, now_,
+                              wall > 0 ? simulated / wall : 0.0, frameSummary(network)));
+    if (!onMachine()) return;
+    for (const std::string& line : timeTable(network)) console_.line(line);
     for (const axis::Group& group : groups_) {
         if (group.status().latePlans == 0) continue;
         console_.line(fmt::format("warning: group {}: {} plans came late; more latency helps",
                                   group.name(), group.status().latePlans));
     }
+    const bool anyTrouble =
+        std::any_of(network.devices.begin(), network.devices.end(), [](const DeviceReport& device) {
+            return !device.workingCounter.empty() || device.emergencies > 0;
+        });
+    if (!anyTrouble) return;
+    for (const std::string& line : deviceTable(network)) console_.line(line);
+}
+
+/// \pre no cycle runs
+NetworkReport MachineRun::networkReport() {
+    std::vector<DeviceEntry> devices;
+    for (std::size_t i = 0; i < machine_.network.slaves.size(); ++i)
+        devices.push_back(entryOf(bus_.master(), i));
+    return summarize(machine_, diagnosis(), devices);
 }
 
 std::string MachineRun::summary() const {

@@ -14,6 +14,7 @@
 #include "loading.hpp"
 #include "machine_control.hpp"
 #include "machine_cycle.hpp"
+#include "network_summary.hpp"
 #include "pace.hpp"
 #include "planning_thread.hpp"
 #include "program_watchdog.hpp"
@@ -21,6 +22,7 @@
 #include "route_office.hpp"
 #include "run_notice.hpp"
 #include "run_reporter.hpp"
+#include "service_notifier.hpp"
 #include "stop_request.hpp"
 
 namespace takt::daemon {
@@ -56,13 +58,14 @@ private:
     void keepHouse(bool cycleRests);
     void conclude();
     void planPaths();
-    void tellStatistics();
+    [[nodiscard]] NetworkReport networkReport();
     [[noreturn]] void leaveHangingProgram(std::size_t program, core::CycleNumber cycle);
 
     // rt, after each cycle.
     void oneCycle() noexcept;
     void supervise() noexcept;
     void doJobs() noexcept;
+    [[nodiscard]] DiagnosisEntry diagnosis() const noexcept;
     void superviseOverruns(const scheduler::Beat& beat) noexcept;
     void superviseGoingOp() noexcept;
     void superviseOperating() noexcept;
@@ -70,6 +73,7 @@ private:
     void superviseLeavingOp() noexcept;
     void enter(Phase phase) noexcept;
     void fail(ExitCode code, RunNotice::Kind kind, std::size_t index = 0) noexcept;
+    void send(const RunNotice& notice) noexcept;
     void note(RunNotice::Kind kind, std::size_t index = 0, std::uint64_t number = 0) noexcept;
     void noteEndedPrograms() noexcept;
     void noteMachineStop() noexcept;
@@ -86,19 +90,24 @@ private:
     Axes& axes_;
     Groups& groups_;
     std::vector<ProgramHost>& programs_;
-    std::vector<bool> noted_;  ///< programs whose end has been noted
+    std::vector<bool> endNoted_;      ///< programs whose end has been noted
+    std::vector<bool> overdueNoted_;  ///< axes that outlasted the present machine stop
     Bus bus_;
     scheduler::DcLock dcLock_;
     scheduler::Grid grid_;
     scheduler::OverrunGuard overruns_;
+    ProgramStock stock_;
     MachineControl control_;
     ControlServer server_;
     MachineCycle cycle_;
     Pace pace_;
     CycleOrders orders_;
     RunNotices notices_;
-    std::vector<RunNotice> heldBack_;  ///< until what they speak of rests
+    std::uint64_t noted_{0};              ///< notices sent
+    std::atomic<std::uint64_t> told_{0};  ///< … and put into words, or held back
+    std::vector<RunNotice> heldBack_;     ///< until what they speak of rests
     RunReporter reporter_;
+    ServiceNotifier service_;
     Phase phase_{Phase::BringUp};
     core::CycleNumber phaseBegan_{0};
     core::CycleNumber now_{0};

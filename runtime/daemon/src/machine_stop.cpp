@@ -8,10 +8,11 @@
 namespace takt::daemon {
 
 MachineStop::MachineStop(const axis::MachineStopParams& params, core::Duration cycle,
-                         std::vector<Input> inputs)
+                         std::vector<Input> inputs, std::size_t axisCount)
     : inputs_{std::move(inputs)},
       limit_{static_cast<core::CycleNumber>((params.time + cycle - core::Duration{1}) / cycle)},
-      onFault_{params.onFault} {}
+      onFault_{params.onFault},
+      overdue_(axisCount, false) {}
 
 bool MachineStop::request(StopCause cause, std::uint16_t source, core::CycleNumber cycle) noexcept {
     if (active()) return false;
@@ -39,6 +40,7 @@ void MachineStop::watchInputs(core::CycleNumber cycle) noexcept {
 bool MachineStop::reset(Axes& axes) noexcept {
     if (activeInput() < inputs_.size()) return false;
     record_ = {};
+    std::fill(overdue_.begin(), overdue_.end(), false);
     for (axis::Axis& axis : axes) axis.releaseMachineStop();
     return true;
 }
@@ -48,8 +50,9 @@ void MachineStop::act(core::CycleNumber cycle, Axes& axes) noexcept {
     for (axis::Axis& axis : axes) axis.machineStop();
     if (driveStopped_ || cycle - record_.cycle < limit_) return;
     driveStopped_ = true;
-    for (axis::Axis& axis : axes) {
-        if (!axis.isDisabled()) axis.quickStop();
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        overdue_[i] = !axes[i].isDisabled();
+        if (overdue_[i]) axes[i].quickStop();
     }
 }
 

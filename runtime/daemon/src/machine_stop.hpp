@@ -44,7 +44,7 @@ public:
     };
 
     MachineStop(const axis::MachineStopParams& params, core::Duration cycle,
-                std::vector<Input> inputs);
+                std::vector<Input> inputs, std::size_t axisCount);
 
     /// rt. Latches; a second request changes nothing. \return true when the machine was not stopped
     /// yet
@@ -61,6 +61,8 @@ public:
 
     [[nodiscard]] bool active() const noexcept { return record_.cause != StopCause::None; }
     [[nodiscard]] const StopRecord& record() const noexcept { return record_; }
+    /// rt. Its time was over before this axis was off: its drive was told to stop. Until the reset.
+    [[nodiscard]] bool overdue(std::size_t axis) const noexcept { return overdue_[axis]; }
     [[nodiscard]] bool onFault() const noexcept { return onFault_; }
 
 private:
@@ -68,6 +70,7 @@ private:
     core::CycleNumber limit_;  ///< cycles until the drives stop by themselves
     bool onFault_;
     bool driveStopped_{false};
+    std::vector<bool> overdue_;  ///< for each axis
     StopRecord record_{};
 };
 

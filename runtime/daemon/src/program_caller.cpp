@@ -121,7 +121,11 @@ CallOutcome ThreadCaller::call(ProgramWork& work, core::CycleNumber /*cycle*/) n
     }
     {
         const core::CycleGuardPause theGateIsAllowed;
-        if (gate_->awaitReturn(now + budget_.time)) {
+        const core::HostTime deadline = now + budget_.time;
+        // Who wakes up from waiting this late was kept from the processor himself, and so was the
+        // program: it gets its time again, once.
+        if (gate_->awaitReturn(deadline) || (clock_.now() - deadline > budget_.time &&
+                                             gate_->awaitReturn(clock_.now() + budget_.time))) {
             underWay_ = false;
             return CallOutcome::CameBack;
         }

@@ -79,8 +79,9 @@ std::string ProgramHost::unknown(std::string_view kind, std::string_view asked,
 
 void ProgramHost::cycle(core::CycleNumber cycle, const Movers& movers) noexcept {
     if (ended()) return;
+    const bool turn = due(cycle);
     if (!caller_->underWay()) {
-        if (held_ || cycle % params_.everyCycles != 0) return;
+        if (held_ || !turn) return;
         open(movers);
         phase_ = ProgramPhase::Running;
     }
@@ -96,6 +97,13 @@ void ProgramHost::cycle(core::CycleNumber cycle, const Movers& movers) noexcept 
     const ProgramPhase phase = phaseAfter(work_->answer());
     if (phase != ProgramPhase::Running) end(phase, cycle);
     settle(movers);
+}
+
+/// Every n-th cycle; when that one was missed, the next that runs.
+bool ProgramHost::due(core::CycleNumber cycle) noexcept {
+    const core::CycleNumber every = params_.everyCycles;
+    const core::CycleNumber last = std::exchange(lastCycle_, cycle);
+    return cycle % every == 0 || (last != 0 && last / every != cycle / every);
 }
 
 void ProgramHost::open(const Movers& movers) noexcept {
@@ -135,6 +143,18 @@ void ProgramHost::hold(const Movers& movers) noexcept {
     if (ended() || held_) return;
     held_ = true;
     stopMovers(movers);
+}
+
+void ProgramHost::exchange(ProgramHost& fresh, const Movers& movers) noexcept {
+    stopMovers(movers);
+    std::swap(work_, fresh.work_);
+    std::swap(inspector_, fresh.inspector_);
+    std::swap(commanded_, fresh.commanded_);
+    std::swap(groupCommanded_, fresh.groupCommanded_);
+    std::swap(instance_, fresh.instance_);
+    phase_ = ProgramPhase::Waiting;
+    held_ = true;
+    endCycle_ = 0;
 }
 
 void ProgramHost::end(ProgramPhase phase, core::CycleNumber cycle) noexcept {

@@ -46,6 +46,13 @@ public:
     /// rt. It is called again from where it was stopped; its blocks show CommandAborted.
     void goOn() noexcept { held_ = false; }
     [[nodiscard]] bool held() const noexcept { return held_; }
+    /// rt. Takes over a fresh instance of the same program, which has been started and has no
+    /// caller, and leaves the old one in it. The program is then stopped before its first call;
+    /// what the old one held its axes by is released. \pre atRest()
+    void exchange(ProgramHost& fresh, const Movers& movers) noexcept;
+    /// How many instances there were before this one.
+    [[nodiscard]] std::uint32_t instance() const noexcept { return instance_; }
+    void setInstance(std::uint32_t instance) noexcept { instance_ = instance; }
     /// rt. No call is out: the program's own values may be looked at, and it may be told something.
     [[nodiscard]] bool atRest() const noexcept {
         return phase_ != ProgramPhase::Abandoned && !(caller_ && caller_->underWay());
@@ -81,6 +88,7 @@ public:
     [[nodiscard]] std::string watches() const;
 
 private:
+    [[nodiscard]] bool due(core::CycleNumber cycle) noexcept;
     void open(const Movers& movers) noexcept;
     void settle(const Movers& movers) noexcept;
     void stopMovers(const Movers& movers) noexcept;
@@ -97,6 +105,8 @@ private:
     ProgramPhase phase_{ProgramPhase::Waiting};
     bool held_{false};
     core::CycleNumber endCycle_{0};
+    core::CycleNumber lastCycle_{0};  ///< in which cycle() was called
+    std::uint32_t instance_{0};
 };
 
 }  // namespace takt::daemon

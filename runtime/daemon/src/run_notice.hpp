@@ -23,6 +23,7 @@ struct RunNotice {
         DrivesStopped,
         MachineStopped,  ///< `stop`
         MachineStopReset,
+        MachineStopOverdue,  ///< `index`: of the axis
     };
     Kind kind{Kind::ReachedOp};
     std::size_t index{0};

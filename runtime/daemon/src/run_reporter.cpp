@@ -51,6 +51,11 @@ void RunReporter::tell(const RunNotice& notice) {
             return tellMachineStop(notice.stop);
         case RunNotice::Kind::MachineStopReset:
             return console_.line(fmt::format("machine stop reset before cycle {}", notice.cycle));
+        case RunNotice::Kind::MachineStopOverdue:
+            return console_.error(fmt::format(
+                "axis {} did not stop and power off within the {:g} s of the machine stop; its "
+                "drive stops it now",
+                machine_.axes[notice.index].name, seconds(machine_.machineStop.time)));
         case RunNotice::Kind::DrivesStopped:
             return console_.error(
                 fmt::format("cycle {}: {} cycles missed in a row; the drives stop", notice.cycle,

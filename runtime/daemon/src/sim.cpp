@@ -72,7 +72,8 @@ void serve(const SimOptions& options, const config::MachineConfig& machine, Cons
 
 int sim(const SimOptions& options) {
     Console console{options.quiet};
-    const config::LoadResult loaded = config::loadMachine(options.machine, options.searchDirs);
+    const config::LoadResult loaded =
+        config::loadMachine(options.machine, {}, config::ProgramLibraries::NotNeeded);
     for (const config::Diagnostic& diagnostic : loaded.diagnostics.items()) {
         console.error(config::format(diagnostic));
     }

@@ -44,6 +44,7 @@ struct ProgramEntry {
 
     ProgramPhase phase{};
     bool held{false};
+    std::uint32_t instance{0};
     core::CycleNumber endCycle{0};
     std::array<double, MostWatches> watches{};
 };

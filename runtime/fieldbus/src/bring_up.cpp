@@ -53,8 +53,9 @@ constexpr std::array ResetWrites{
 
 }  // namespace
 
-BringUp::BringUp(const Parts& parts, Conversation& talk, const Progress& progress)
-    : parts_{parts}, talk_{talk}, progress_{progress} {}
+BringUp::BringUp(const Parts& parts, Conversation& talk, const Progress& progress,
+                 const std::function<bool()>& goOn)
+    : parts_{parts}, talk_{talk}, progress_{progress}, goOn_{goOn} {}
 
 void BringUp::say(std::string_view text) const {
     if (progress_) progress_(text);
@@ -80,8 +81,19 @@ std::vector<BringUpProblem> BringUp::run() {
     for (const Stage stage : stages) {
         (this->*stage)();
         if (!problems_.empty()) break;
+        if (!brokenOff()) continue;
+        breakOff();
+        break;
     }
     return std::move(problems_);
+}
+
+/// What has been set up so far is forgotten in INIT.
+void BringUp::breakOff() {
+    std::array<std::uint8_t, 2> init{};
+    wire::store16(init, 0, static_cast<std::uint16_t>(wire::AlState::Init) | wire::AlErrorBit);
+    talk_.ask(broadcastWrite(reg::AlControl, init));
+    blameNetwork("network: the bring-up was broken off; all devices were sent to INIT");
 }
 
 void BringUp::checkParams() {
@@ -301,6 +313,7 @@ void BringUp::settleClocks() {
     std::size_t quiet = 0;
     std::uint32_t sent = 0;
     for (; sent < parts_.network.dcDriftFrames && quiet < quietFrames * rounds; ++sent) {
+        if (brokenOff()) return;
         frames.begin();
         frames.openFrame();
         parts_.reference.append(frames);

@@ -37,7 +37,9 @@ public:
         ReferenceClock& reference;
     };
 
-    BringUp(const Parts& parts, Conversation& talk, const Progress& progress);
+    /// \param goOn false: breaks it off
+    BringUp(const Parts& parts, Conversation& talk, const Progress& progress,
+            const std::function<bool()>& goOn);
 
     /// \return all problems found before the step that could not be left; empty = ready
     std::vector<BringUpProblem> run();
@@ -46,6 +48,8 @@ public:
 
 private:
     void say(std::string_view text) const;
+    [[nodiscard]] bool brokenOff() const { return goOn_ && !goOn_(); }
+    void breakOff();
     void blameNetwork(std::string text);
     void blame(std::size_t slave, std::string_view text);
 
@@ -67,6 +71,7 @@ private:
     Parts parts_;
     Conversation& talk_;
     const Progress& progress_;
+    const std::function<bool()>& goOn_;
     std::vector<BringUpProblem> problems_;
     std::vector<ScannedDevice> found_;
     std::size_t count_{0};

@@ -14,6 +14,8 @@ constexpr std::uint8_t Tries = 3;
 constexpr std::size_t ExpeditedSize = 4;
 constexpr std::size_t SdoAt = mbx::CoeHeaderSize;
 constexpr std::size_t DataAt = SdoAt + mbx::SdoHeaderSize;
+constexpr std::size_t SegmentAt = SdoAt + 1;
+constexpr std::size_t SmallestSegment = mbx::MinSdoSize - 1;
 
 std::uint8_t expeditedDownload(std::size_t size) noexcept {
     return static_cast<std::uint8_t>(mbx::DownloadRequest | mbx::Expedited | mbx::SizeIndicated |
@@ -31,9 +33,10 @@ void CoeClient::reset() noexcept {
     mailbox_.reset();
 }
 
-bool CoeClient::begin(core::ObjectAddress address) noexcept {
+bool CoeClient::begin(core::ObjectAddress address, bool writing) noexcept {
     if (pending()) return false;
     address_ = address;
+    writing_ = writing;
     reply_ = {};
     reply_.state = core::ObjectState::Pending;
     tries_ = 0;
@@ -41,21 +44,40 @@ bool CoeClient::begin(core::ObjectAddress address) noexcept {
 }
 
 bool CoeClient::startRead(core::ObjectAddress address) noexcept {
-    if (!begin(address)) return false;
-    writing_ = false;
+    if (!begin(address, false)) return false;
+    into_ = reply_.value.bytes;
+    transmit();
+    return true;
+}
+
+bool CoeClient::startRead(core::ObjectAddress address, std::span<std::uint8_t> into) noexcept {
+    if (!begin(address, false)) return false;
+    into_ = into;
     transmit();
     return true;
 }
 
 bool CoeClient::startWrite(core::ObjectAddress address, const core::ObjectValue& value) noexcept {
-    if (!begin(address)) return false;
-    writing_ = true;
+    if (!begin(address, true)) return false;
     value_ = value;
     if (value.size == 0 || value.size > value.bytes.size()) {
         finish(core::ObjectState::Failed, abortcode::LengthMismatch);
-    } else {
-        transmit();
+        return true;
     }
+    from_ = std::span{value_.bytes}.first(value.size);
+    transmit();
+    return true;
+}
+
+bool CoeClient::startWrite(core::ObjectAddress address,
+                           std::span<const std::uint8_t> from) noexcept {
+    if (!begin(address, true)) return false;
+    if (from.empty()) {
+        finish(core::ObjectState::Failed, abortcode::LengthMismatch);
+        return true;
+    }
+    from_ = from;
+    transmit();
     return true;
 }
 
@@ -72,31 +94,67 @@ void CoeClient::transmit() noexcept {
         return;
     }
     std::fill_n(body.begin(), longest, std::uint8_t{0});
-    wire::store16(
-        body, 0,
-        static_cast<std::uint16_t>(static_cast<unsigned>(mbx::CoeService::SdoRequest) << 12U));
+    segmented_ = false;
+    toggle_ = 0;
+    size_ = writing_ ? from_.size() : 0;
+    done_ = 0;
     wire::store16(body, SdoAt + 1, address_.index);
     body[SdoAt + 3] = address_.subindex;
     std::size_t length = SdoAt + mbx::MinSdoSize;
-    if (!writing_) {
-        body[SdoAt] = mbx::UploadRequest;
+    if (writing_) {
+        length = fillDownload(body);
     } else {
-        std::size_t at = DataAt;
-        if (value_.size <= ExpeditedSize) {
-            body[SdoAt] = expeditedDownload(value_.size);
-        } else {
-            body[SdoAt] = mbx::DownloadRequest | mbx::SizeIndicated;
-            wire::store32(body, DataAt, value_.size);
-            at += 4;
-            length = at + value_.size;
-        }
-        std::copy_n(value_.bytes.begin(), value_.size,
-                    body.begin() + static_cast<std::ptrdiff_t>(at));
+        body[SdoAt] = mbx::UploadRequest;
     }
+    ++tries_;
+    send(length);
+}
+
+/// The first message of a download, with as much of the value as it holds. \return its length
+std::size_t CoeClient::fillDownload(std::span<std::uint8_t> body) noexcept {
+    std::size_t at = DataAt;
+    if (size_ <= ExpeditedSize) {
+        body[SdoAt] = expeditedDownload(size_);
+        done_ = size_;
+    } else {
+        body[SdoAt] = mbx::DownloadRequest | mbx::SizeIndicated;
+        wire::store32(body, DataAt, static_cast<std::uint32_t>(size_));
+        at += 4;
+        done_ = std::min(size_, body.size() - at);
+    }
+    std::copy_n(from_.begin(), done_, body.begin() + static_cast<std::ptrdiff_t>(at));
+    return std::max(at + done_, SdoAt + mbx::MinSdoSize);
+}
+
+void CoeClient::transmitSegment() noexcept {
+    mailbox_.withdraw();
+    const std::span<std::uint8_t> body = mailbox_.body();
+    std::fill_n(body.begin(), SdoAt + mbx::MinSdoSize, std::uint8_t{0});
+    std::size_t length = SdoAt + mbx::MinSdoSize;
+    if (writing_) {
+        const std::size_t part = std::min(size_ - done_, body.size() - SegmentAt);
+        // Unused bytes are told in a segment of the smallest size only.
+        const std::size_t unused = part < SmallestSegment ? SmallestSegment - part : 0;
+        const bool last = done_ + part == size_;
+        body[SdoAt] = static_cast<std::uint8_t>(mbx::DownloadSegmentRequest | toggle_ |
+                                                (unused << 1U) | (last ? mbx::LastSegment : 0));
+        std::copy_n(from_.begin() + static_cast<std::ptrdiff_t>(done_), part,
+                    body.begin() + SegmentAt);
+        done_ += part;
+        length = std::max(length, SegmentAt + part);
+    } else {
+        body[SdoAt] = mbx::UploadSegmentRequest | toggle_;
+    }
+    send(length);
+}
+
+void CoeClient::send(std::size_t length) noexcept {
+    wire::store16(
+        mailbox_.body(), 0,
+        static_cast<std::uint16_t>(static_cast<unsigned>(mbx::CoeService::SdoRequest) << 12U));
     mailbox_.post(mbx::Type::CoE, length);
     mailbox_.expect(true);
     timed_ = false;
-    ++tries_;
 }
 
 void CoeClient::finish(core::ObjectState state, std::uint32_t abortCode) noexcept {
@@ -160,6 +218,7 @@ void CoeClient::takeEmergency(std::span<const std::uint8_t> body) noexcept {
 void CoeClient::takeSdo(std::span<const std::uint8_t> sdo) noexcept {
     const auto command = static_cast<std::uint8_t>(sdo[0] & ~mbx::CompleteAccess);
     const bool mine = wire::load16(sdo, 1) == address_.index && sdo[3] == address_.subindex;
+    if (pending() && segmented_ && command != mbx::Abort) return takeSegment(sdo);
     if (!pending() || !mine) {
         ++unexpected_;
         return;
@@ -167,7 +226,7 @@ void CoeClient::takeSdo(std::span<const std::uint8_t> sdo) noexcept {
     if (command == mbx::Abort) {
         finish(core::ObjectState::Failed, wire::load32(sdo, 4));
     } else if (writing_ && (command & mbx::CommandMask) == mbx::DownloadResponse) {
-        finish(core::ObjectState::Done, 0);
+        nextSegment();
     } else if (!writing_ && (command & mbx::CommandMask) == mbx::UploadResponse) {
         takeUpload(sdo);
     } else {
@@ -177,22 +236,64 @@ void CoeClient::takeSdo(std::span<const std::uint8_t> sdo) noexcept {
 
 void CoeClient::takeUpload(std::span<const std::uint8_t> sdo) noexcept {
     std::span<const std::uint8_t> data = sdo.subspan(mbx::SdoHeaderSize);
-    std::size_t size = 0;
     if ((sdo[0] & mbx::Expedited) != 0) {
-        size = ExpeditedSize;
-        if ((sdo[0] & mbx::SizeIndicated) != 0) size -= (sdo[0] >> 2) & 3U;
+        size_ = ExpeditedSize;
+        if ((sdo[0] & mbx::SizeIndicated) != 0) size_ -= (sdo[0] >> 2) & 3U;
     } else {
-        size = wire::load32(data, 0);
+        size_ = wire::load32(data, 0);
         data = data.subspan(4);
-        // The rest would come in segments, which one value of eight bytes never needs.
-        if (size > data.size() && size <= reply_.value.bytes.size()) size = data.size();
     }
-    if (size > reply_.value.bytes.size()) {
+    if (size_ > into_.size()) {
         finish(core::ObjectState::Failed, abortcode::LengthTooHigh);
         return;
     }
-    std::copy_n(data.begin(), size, reply_.value.bytes.begin());
-    reply_.value.size = static_cast<std::uint8_t>(size);
+    takeData(data.first(std::min(data.size(), size_)));
+    nextSegment();
+}
+
+/// A segment names no object: its toggle bit tells whether it is the one that is awaited.
+void CoeClient::takeSegment(std::span<const std::uint8_t> sdo) noexcept {
+    const std::uint8_t awaited =
+        writing_ ? mbx::DownloadSegmentResponse : mbx::UploadSegmentResponse;
+    if ((sdo[0] & mbx::CommandMask) != awaited || (sdo[0] & mbx::ToggleBit) != toggle_) {
+        ++unexpected_;
+        return;
+    }
+    toggle_ ^= mbx::ToggleBit;
+    if (!writing_) {
+        std::span<const std::uint8_t> data = sdo.subspan(1);
+        if (data.size() <= SmallestSegment) {
+            data = data.first(
+                std::min<std::size_t>(data.size(), SmallestSegment - ((sdo[0] >> 1U) & 7U)));
+        }
+        const bool last = (sdo[0] & mbx::LastSegment) != 0;
+        if (data.size() > size_ - done_) {
+            finish(core::ObjectState::Failed, abortcode::LengthTooHigh);
+            return;
+        }
+        takeData(data);
+        // One that brings nothing would go on for ever.
+        if (done_ < size_ && (last || data.empty())) {
+            finish(core::ObjectState::Failed, abortcode::LengthTooLow);
+            return;
+        }
+    }
+    nextSegment();
+}
+
+void CoeClient::takeData(std::span<const std::uint8_t> data) noexcept {
+    std::copy(data.begin(), data.end(), into_.begin() + static_cast<std::ptrdiff_t>(done_));
+    done_ += data.size();
+}
+
+void CoeClient::nextSegment() noexcept {
+    if (done_ < size_) {
+        segmented_ = true;
+        transmitSegment();
+        return;
+    }
+    if (!writing_ && into_.data() == reply_.value.bytes.data())
+        reply_.value.size = static_cast<std::uint8_t>(size_);
     finish(core::ObjectState::Done, 0);
 }
 

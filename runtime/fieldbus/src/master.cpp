@@ -165,7 +165,8 @@ Master::Master(const NetworkParams& network, wire::Link& link, core::ClockSource
 
 Master::~Master() = default;
 
-std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string_view)>& progress) {
+std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string_view)>& progress,
+                                            const std::function<bool()>& goOn) {
     Parts& parts = *parts_;
     parts.walk.off();
     parts.prepared = false;
@@ -174,7 +175,8 @@ std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string
     BringUp bringUp{{parts.network, parts.layout, parts.slice, parts.machines, parts.agents,
                      parts.scripts, parts.reference},
                     talk,
-                    progress};
+                    progress,
+                    goOn};
     std::vector<BringUpProblem> problems = bringUp.run();
     if (!problems.empty()) return problems;
     parts.walk.begin(bringUp.referenceSlave());
@@ -219,8 +221,14 @@ const BusTiming& Master::timing() const noexcept {
 core::DeviceImage Master::image(std::size_t slave) noexcept {
     return parts_->data.image(slave);
 }
-core::ObjectAccess& Master::objects(std::size_t slave) noexcept {
-    return *parts_->agents[slave];
+core::ObjectAccess& Master::objects(std::size_t slave, ObjectUser user) noexcept {
+    return parts_->agents[slave]->objects(user);
+}
+
+DeviceState Master::deviceState(std::size_t slave) const noexcept {
+    const SlaveAgent& agent = *parts_->agents[slave];
+    const AlReading& al = agent.al();
+    return {agent.answers(), al.state, al.error, al.code, agent.station()};
 }
 
 const EmergencyRecord& Master::lastEmergency(std::size_t slave) const noexcept {
@@ -252,6 +260,10 @@ std::span<const GroupCounters> Master::groups() const noexcept {
     return parts_->data.groups();
 }
 
+std::size_t Master::groupOf(std::size_t slave) const noexcept {
+    return parts_->layout.slaves[slave].group;
+}
+
 std::uint16_t Master::expectedWorkingCounter() const noexcept {
     std::uint16_t sum = 0;
     for (const GroupCounters& group : parts_->data.groups()) {
@@ -265,7 +277,11 @@ const NetworkProblem& Master::problemRecord() const noexcept {
 }
 
 std::string Master::problem() const {
-    return describe(parts_->network, parts_->walk.problem());
+    return explain(parts_->network, parts_->walk.problem());
+}
+
+std::string Master::explain(const NetworkParams& network, const NetworkProblem& problem) {
+    return describe(network, problem);
 }
 
 }  // namespace takt::fieldbus::ethercat

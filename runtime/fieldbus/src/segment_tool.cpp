@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <stdexcept>
 #include <takt/fieldbus/ethercat/segment_tool.hpp>
 #include <takt/wire/byte_io.hpp>
@@ -91,6 +92,7 @@ struct SegmentTool::Parts {
     void climb(Script& script, Node& node, std::size_t from, std::size_t to);
     bool startMailbox(std::size_t position);
     core::ObjectReply await(std::size_t position);
+    core::ObjectReply ask(std::size_t position, const std::function<bool(CoeClient&)>& start);
 
     FrameSet frames;
     Conversation talk;
@@ -212,7 +214,19 @@ bool SegmentTool::Parts::startMailbox(std::size_t position) {
 core::ObjectReply SegmentTool::Parts::await(std::size_t position) {
     Node& node = *nodes[position];
     run(node);
-    return node.agent.reply();
+    return node.agent.objects(ObjectUser::Operator).reply();
+}
+
+core::ObjectReply SegmentTool::Parts::ask(std::size_t position,
+                                          const std::function<bool(CoeClient&)>& start) {
+    Node& node = *nodes[position];
+    CoeClient* const client = node.agent.objectsDirectly();
+    if (client == nullptr || !startMailbox(position) || !start(*client)) {
+        return {core::ObjectState::Failed, {}, wire::abortcode::WrongDeviceState};
+    }
+    node.slice.work().set(0);
+    run(node);
+    return client->reply();
 }
 
 SegmentTool::SegmentTool(wire::Link& link, core::ClockSource& clock)
@@ -254,7 +268,8 @@ bool SegmentTool::toState(std::size_t position, wire::AlState target) {
 }
 
 core::ObjectReply SegmentTool::upload(std::size_t position, core::ObjectAddress address) {
-    if (!parts_->startMailbox(position) || !parts_->nodes[position]->agent.startRead(address)) {
+    core::ObjectAccess& objects = parts_->nodes[position]->agent.objects(ObjectUser::Operator);
+    if (!parts_->startMailbox(position) || !objects.startRead(address)) {
         return {core::ObjectState::Failed, {}, wire::abortcode::WrongDeviceState};
     }
     return parts_->await(position);
@@ -262,11 +277,28 @@ core::ObjectReply SegmentTool::upload(std::size_t position, core::ObjectAddress 
 
 core::ObjectReply SegmentTool::download(std::size_t position, core::ObjectAddress address,
                                         const core::ObjectValue& value) {
-    if (!parts_->startMailbox(position) ||
-        !parts_->nodes[position]->agent.startWrite(address, value)) {
+    core::ObjectAccess& objects = parts_->nodes[position]->agent.objects(ObjectUser::Operator);
+    if (!parts_->startMailbox(position) || !objects.startWrite(address, value)) {
         return {core::ObjectState::Failed, {}, wire::abortcode::WrongDeviceState};
     }
     return parts_->await(position);
+}
+
+core::ObjectReply SegmentTool::uploadLong(std::size_t position, core::ObjectAddress address,
+                                          std::vector<std::uint8_t>& value) {
+    std::vector<std::uint8_t> room(MostBytes);
+    const core::ObjectReply reply =
+        parts_->ask(position, [&](CoeClient& client) { return client.startRead(address, room); });
+    if (reply.state != core::ObjectState::Done) return reply;
+    room.resize(parts_->nodes[position]->agent.objectsDirectly()->length());
+    value = std::move(room);
+    return reply;
+}
+
+core::ObjectReply SegmentTool::downloadLong(std::size_t position, core::ObjectAddress address,
+                                            std::span<const std::uint8_t> value) {
+    return parts_->ask(position,
+                       [&](CoeClient& client) { return client.startWrite(address, value); });
 }
 
 const std::vector<SegmentDevice>& SegmentTool::devices() const noexcept {

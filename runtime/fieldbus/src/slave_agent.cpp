@@ -40,11 +40,10 @@ const Step* SlaveAgent::failedStep() const noexcept {
 
 void SlaveAgent::reset() noexcept {
     if (coe_) coe_->client.reset();
-    if (userReply_.state == core::ObjectState::Pending) {
-        userReply_.state = core::ObjectState::Failed;
-        userReply_.abortCode = wire::abortcode::WrongDeviceState;
-    }
-    userRequest_ = statusWanted_ = differenceWanted_ = false;
+    if (asking_ != nullptr)
+        asking_->end({core::ObjectState::Failed, {}, wire::abortcode::WrongDeviceState});
+    asking_ = nullptr;
+    statusWanted_ = differenceWanted_ = false;
     difference_.reset();
     al_ = {};
     answers_ = true;
@@ -248,9 +247,9 @@ void SlaveAgent::endStateStep() noexcept {
 void SlaveAgent::afterMailbox() noexcept {
     const core::ObjectReply& reply = coe_->client.reply();
     if (reply.state == core::ObjectState::Pending) return;
-    if (userRequest_) {
-        userRequest_ = false;
-        userReply_ = reply;
+    if (asking_ != nullptr) {
+        asking_->end(reply);
+        asking_ = nullptr;
     } else if (scriptState_ == ScriptState::Running && stepStarted_) {
         if (const auto* object = std::get_if<ObjectStep>(&(*script_)[position_])) {
             endObjectStep(*object);
@@ -290,30 +289,27 @@ std::uint32_t SlaveAgent::whyNoObjects() const noexcept {
     return al_.state < wire::AlState::PreOp ? wire::abortcode::WrongDeviceState : 0;
 }
 
-bool SlaveAgent::startRead(core::ObjectAddress address) noexcept {
-    if (userReply_.state == core::ObjectState::Pending) return false;
-    userReply_ = {};
-    userReply_.abortCode = whyNoObjects();
-    userReply_.state = core::ObjectState::Failed;
-    if (userReply_.abortCode != 0) return true;
-    if (!coe_->client.startRead(address)) return false;
-    userReply_.state = core::ObjectState::Pending;
-    userRequest_ = true;
-    wake();
+template <typename Start>
+bool SlaveAgent::Door::begin(const Start& start) noexcept {
+    if (reply_.state == core::ObjectState::Pending) return false;
+    if (const std::uint32_t abortCode = agent_.whyNoObjects(); abortCode != 0) {
+        reply_ = {core::ObjectState::Failed, {}, abortCode};
+        return true;
+    }
+    if (!start(agent_.coe_->client)) return false;
+    reply_ = {core::ObjectState::Pending, {}, 0};
+    agent_.asking_ = this;
+    agent_.wake();
     return true;
 }
 
-bool SlaveAgent::startWrite(core::ObjectAddress address, const core::ObjectValue& value) noexcept {
-    if (userReply_.state == core::ObjectState::Pending) return false;
-    userReply_ = {};
-    userReply_.abortCode = whyNoObjects();
-    userReply_.state = core::ObjectState::Failed;
-    if (userReply_.abortCode != 0) return true;
-    if (!coe_->client.startWrite(address, value)) return false;
-    userReply_.state = core::ObjectState::Pending;
-    userRequest_ = true;
-    wake();
-    return true;
+bool SlaveAgent::Door::startRead(core::ObjectAddress address) noexcept {
+    return begin([address](CoeClient& client) { return client.startRead(address); });
+}
+
+bool SlaveAgent::Door::startWrite(core::ObjectAddress address,
+                                  const core::ObjectValue& value) noexcept {
+    return begin([&](CoeClient& client) { return client.startWrite(address, value); });
 }
 
 }  // namespace takt::fieldbus::ethercat

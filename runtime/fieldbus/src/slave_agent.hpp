@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <takt/core/fixed_vector.hpp>
 #include <takt/core/object_access.hpp>
+#include <takt/fieldbus/ethercat/object_user.hpp>
 #include <takt/wire/device_description.hpp>
 
 #include "acyclic.hpp"
@@ -42,11 +44,13 @@ struct ScriptNote {
 
 /// Everything acyclic about one slave, one datagram at a time: scripts, AL status and clock reads,
 /// mailbox.
-class SlaveAgent final : public AcyclicMachine, public core::ObjectAccess {
+class SlaveAgent final : public AcyclicMachine {
 public:
     enum class ScriptState : std::uint8_t { Idle, Running, Done, Failed };
 
     SlaveAgent(const SlaveParams& params, std::uint16_t station, WorkSet& work, std::size_t number);
+    SlaveAgent(const SlaveAgent&) = delete;  // its doors know where it is
+    SlaveAgent& operator=(const SlaveAgent&) = delete;
 
     /// rt. Starts a script; it must outlive its run.
     void run(const Script& script) noexcept;
@@ -79,16 +83,37 @@ public:
     [[nodiscard]] std::uint16_t station() const noexcept { return station_; }
     [[nodiscard]] const EmergencyRecord& lastEmergency() const noexcept;
     [[nodiscard]] std::uint32_t emergencies() const noexcept;
+    /// Outside the cycle. For values of any length while neither script nor user asks; null: the
+    /// device has no objects.
+    [[nodiscard]] CoeClient* objectsDirectly() noexcept { return coe_ ? &coe_->client : nullptr; }
 
     bool next(core::HostTime now, Request& request) noexcept override;
     void take(core::HostTime now, const Reply& reply) noexcept override;
     [[nodiscard]] bool busy() const noexcept override;
 
-    bool startRead(core::ObjectAddress address) noexcept override;
-    bool startWrite(core::ObjectAddress address, const core::ObjectValue& value) noexcept override;
-    [[nodiscard]] core::ObjectReply reply() const noexcept override { return userReply_; }
+    /// rt. The dictionary for one of its users: each sees the replies to its own requests only.
+    [[nodiscard]] core::ObjectAccess& objects(ObjectUser user) noexcept {
+        return doors_[static_cast<std::size_t>(user)];
+    }
 
 private:
+    class Door final : public core::ObjectAccess {
+    public:
+        explicit Door(SlaveAgent& agent) noexcept : agent_{agent} {}
+        bool startRead(core::ObjectAddress address) noexcept override;
+        bool startWrite(core::ObjectAddress address,
+                        const core::ObjectValue& value) noexcept override;
+        [[nodiscard]] core::ObjectReply reply() const noexcept override { return reply_; }
+        void end(const core::ObjectReply& reply) noexcept { reply_ = reply; }
+
+    private:
+        template <typename Start>
+        bool begin(const Start& start) noexcept;
+
+        SlaveAgent& agent_;
+        core::ObjectReply reply_{};
+    };
+
     enum class Job : std::uint8_t { None, Status, Difference, Walk, Register, Mailbox };
 
     struct Coe {
@@ -136,8 +161,8 @@ private:
     std::uint8_t statusTries_{0};
     bool differenceWanted_{false};
     std::uint8_t differenceTries_{0};
-    bool userRequest_{false};  ///< the pending SDO is of the user, not of the script
-    core::ObjectReply userReply_{};
+    std::array<Door, ObjectUsers> doors_{Door{*this}, Door{*this}};
+    Door* asking_{nullptr};  ///< whose SDO is pending; null: that of the script, or none
 };
 
 }  // namespace takt::fieldbus::ethercat

@@ -9,6 +9,8 @@ Beat Grid::wait(core::ClockSource& clock) noexcept {
         const auto missed = (now - next_) / cycle_ + 1;
         beat.skipped = static_cast<std::uint32_t>(missed);
         next_ += missed * cycle_;
+        if (beat.skipped <= bridgeable_) beat.madeUpFor = beat.skipped;
+        number_ += beat.madeUpFor;
     }
     clock.sleepUntil(next_);
     beat.number = number_++;

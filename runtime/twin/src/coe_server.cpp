@@ -12,10 +12,11 @@ namespace mbx = wire::mbx;
 
 namespace {
 
+using mbx::LastSegment;
+using mbx::ToggleBit;
+
 constexpr std::size_t DataAt = 4;  // of an expedited transfer or of the size of a normal one
 constexpr std::size_t NormalDataAt = 8;
-constexpr std::uint8_t ToggleBit = 0x10;
-constexpr std::uint8_t LastSegment = 0x01;
 constexpr std::size_t SmallestSegment = 7;
 constexpr std::uint32_t ToggleError = 0x05030000;
 constexpr std::uint32_t OutOfMemory = 0x05040005;

@@ -58,6 +58,11 @@ public:
     void openPort(AxisPort& port) const noexcept;
     void takeCommands(AxisPort& port) noexcept;
     void step() noexcept;
+    /// rt. Before readInputs(), for each cycle the controller missed: the motion goes on, and its
+    /// set-point is lost like one in a lost frame; the drive interpolates over it.
+    void missCycle() noexcept;
+    /// rt. Before readInputs(), for missed cycles in which the motion did not go on.
+    void standFor(std::uint32_t cycles) noexcept { drive_.missCycles(cycles); }
     void writeOutputs() noexcept;
 
     // The daemon's requests (rt), between readInputs() and step().

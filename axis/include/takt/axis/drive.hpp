@@ -29,14 +29,14 @@ enum class HomingOutcome : std::uint8_t {
 /// What the drive said this cycle.
 struct DriveInputs {
     std::int64_t counts{0};  ///< unfolded; bridged with the last step while inputs are lost
-    std::int64_t step{0};    ///< change of `counts` against the last cycle
+    std::int64_t step{
+        0};  ///< change of the drive's own position in a cycle; kept while inputs are lost
     std::uint16_t statusword{0};
     std::uint16_t errorCode{0};  ///< 603Fh
     std::uint32_t digitalInputs{0};
     std::int8_t modeDisplay{0};
-    std::uint32_t bridged{0};  ///< cycles without inputs just before this one
-    bool seen{false};          ///< inputs were valid at least once
-    bool fresh{false};         ///< inputs are of this cycle
+    bool seen{false};   ///< inputs were valid at least once
+    bool fresh{false};  ///< inputs are of this cycle
 };
 
 /// A CiA 402 drive (IEC 61800-7-201) behind a process image: decoding, power sequence, fault reset,
@@ -57,6 +57,8 @@ public:
 
     /// rt. Decodes the inputs and steps homing, mode change and reset.
     void readInputs() noexcept;
+    /// rt. The controller missed cycles just before this one, without frame and inputs.
+    void missCycles(std::uint32_t count) noexcept { unseen_ += count; }
     /// rt. Encodes controlword, mode and target.
     void writeOutputs() noexcept;
 
@@ -164,6 +166,7 @@ private:
     bool seenClean_{false};
     bool stuck_{false};
     std::uint32_t homingCycles_{0};
+    std::uint32_t unseen_{0};  ///< cycles since the inputs were of their cycle
     std::uint32_t stepCycles_{0};
     std::uint32_t stillCycles_{0};      ///< of the homing's end
     std::uint32_t quickStopCycles_{0};  ///< at rest in Quick stop active

@@ -46,6 +46,9 @@ public:
     void openPort(GroupPort& port) const noexcept;
     void takeCommands(GroupPort& port) noexcept;
     void step() noexcept;
+    /// rt. Before readMembers() and the axes' missCycle(), for each cycle the controller missed:
+    /// the motion goes on.
+    void missCycle() noexcept;
 
     /// rt. The program that moves the group threw, failed or was abandoned: its commands go, the
     /// group stops on its path and ends in GroupStandby. Between readMembers() and step().
@@ -89,6 +92,7 @@ private:
     // group_path.cpp: motion
     void joinMembers() noexcept;
     void leaveMembers() noexcept;
+    void leadMembers() noexcept;
     void startFront() noexcept;
     void startDirect() noexcept;
     void askForPlan() noexcept;

@@ -18,10 +18,11 @@ int commandLine(int argc, char** argv, std::vector<daemon::LinkedProgram> progra
 
 template <typename ProgramClass>
 [[nodiscard]] daemon::LinkedProgram linked(std::string name) {
-    return {
-        std::move(name),
-        program::ProgramPtr{new ProgramClass, program::ProgramDeleter{
-                                                  nullptr, [](program::Program* p) { delete p; }}}};
+    return {std::move(name), [] {
+                return program::ProgramPtr{
+                    new ProgramClass,
+                    program::ProgramDeleter{nullptr, [](program::Program* p) { delete p; }}};
+            }};
 }
 
 }  // namespace takt::cli

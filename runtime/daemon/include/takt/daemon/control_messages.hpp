@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <takt/daemon/network_report.hpp>
 #include <vector>
 
 /// What goes over the control socket: one JSON object in a line, both ways. Everything here is
@@ -13,11 +14,15 @@ namespace takt::daemon {
 /// `{"id":7,"do":"inch","axis":"X","distance":0.1,"velocity":5}`
 struct ControlRequest {
     std::uint64_t id{0};  ///< comes back in every reply to it
-    std::string verb{};   ///< "status", "events", or an order: "inch", "power-on", …
+    std::string verb{};   ///< "status", "events", "network", or an order: "inch", "power-on", …
     std::string axis{};
     std::string program{};
     double distance{0.0};
     double velocity{0.0};
+    std::string device{};    ///< name or position, for objects
+    std::string object{};    ///< "0x6065:0"
+    std::string data{};      ///< of a download: "E8030000", the bytes as on the wire
+    bool force{false};       ///< of a download: also while a program runs
     std::uint64_t after{0};  ///< events: those with a higher number
     std::string who{};       ///< how the client calls itself, for "operated by …"
 };
@@ -91,8 +96,11 @@ struct ControlReply {
     ReplyKind kind{ReplyKind::Done};
     std::string error{};  ///< why refused or failed
     std::uint64_t cycle{0};
+    std::string data{};          ///< of an upload: the bytes as on the wire
+    std::uint64_t abortCode{0};  ///< with which a device refused an object
     std::optional<StatusReport> status{};
     std::optional<std::vector<EventReport>> events{};
+    std::optional<NetworkReport> network{};
 };
 
 /// One line without its end. \return empty, with `error` saying why, when the line is no such thing

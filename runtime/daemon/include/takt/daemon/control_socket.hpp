@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,15 @@ private:
     int lock_{-1};
     int socket_{-1};
 };
+
+/// User and group of one end of a connection.
+struct Identity {
+    unsigned user{0};
+    unsigned group{0};
+};
+/// \param groups further groups of the other end
+[[nodiscard]] bool mayConnect(const Identity& other, std::span<const unsigned> groups,
+                              const Identity& own) noexcept;
 
 /// Who is at the other end of a connection.
 struct Peer {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <takt/core/time.hpp>
@@ -22,7 +23,7 @@ enum class ExitCode : int {
 /// A program that is part of the executable instead of a library.
 struct LinkedProgram {
     std::string name;  ///< of a <Program> in the machine file, or a new one
-    program::ProgramPtr program;
+    std::function<program::ProgramPtr()> make;  ///< called again when the program is reset
 };
 
 /// What `takt run` was asked to do.

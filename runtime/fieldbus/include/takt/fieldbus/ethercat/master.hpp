@@ -15,8 +15,10 @@
 #include <takt/fieldbus/ethercat/bring_up_problem.hpp>
 #include <takt/fieldbus/ethercat/cycle_counters.hpp>
 #include <takt/fieldbus/ethercat/dc_sample.hpp>
+#include <takt/fieldbus/ethercat/device_state.hpp>
 #include <takt/fieldbus/ethercat/emergency.hpp>
 #include <takt/fieldbus/ethercat/network_state.hpp>
+#include <takt/fieldbus/ethercat/object_user.hpp>
 #include <takt/fieldbus/fieldbus_params.hpp>
 #include <takt/wire/link.hpp>
 #include <vector>
@@ -48,7 +50,10 @@ public:
     /// data mapped, clocks settled and SYNC0 armed; may be called again after a failure. `progress`
     /// gets lines for people and may be empty. \return all problems; empty = ready for the cyclic
     /// phase
-    std::vector<BringUpProblem> bringUp(const std::function<void(std::string_view)>& progress);
+    /// \param goOn asked again and again; false: all devices are led to INIT, and that is the
+    /// problem. May be empty
+    std::vector<BringUpProblem> bringUp(const std::function<void(std::string_view)>& progress,
+                                        const std::function<bool()>& goOn = {});
 
     /// The first host time at or after `notBefore` at which a frame that is sent then passes the
     /// reference clock just sync0AfterSend before a SYNC0. \pre bringUp() succeeded
@@ -75,7 +80,11 @@ public:
     /// rt. \pre slave < number of configured slaves; the spans stay valid as long as the master
     [[nodiscard]] core::DeviceImage image(std::size_t slave) noexcept;
     /// rt. SDO by mailbox, served by the acyclic slice; from PREOP on.
-    [[nodiscard]] core::ObjectAccess& objects(std::size_t slave) noexcept;
+    [[nodiscard]] core::ObjectAccess& objects(std::size_t slave,
+                                              ObjectUser user = ObjectUser::Axis) noexcept;
+    /// rt. AL state of a device as it was last seen; in OP it is read again whenever the bus as a
+    /// whole shows that some device has another one.
+    [[nodiscard]] DeviceState deviceState(std::size_t slave) const noexcept;
     /// rt. The last emergency of a slave and how many there were since bring-up.
     [[nodiscard]] const EmergencyRecord& lastEmergency(std::size_t slave) const noexcept;
     [[nodiscard]] std::uint32_t emergencies(std::size_t slave) const noexcept;
@@ -84,6 +93,8 @@ public:
     [[nodiscard]] CycleCounters counters() const noexcept;
     /// rt. One entry for each process-data datagram.
     [[nodiscard]] std::span<const GroupCounters> groups() const noexcept;
+    /// rt. The one that carries a device's process data.
+    [[nodiscard]] std::size_t groupOf(std::size_t slave) const noexcept;
     /// Sum of the expected working counters of all process-data datagrams.
     [[nodiscard]] std::uint16_t expectedWorkingCounter() const noexcept;
 
@@ -92,6 +103,9 @@ public:
     /// Outside the cycle. Why the network failed or which device fell back, in words; empty:
     /// nothing.
     [[nodiscard]] std::string problem() const;
+    /// A problem of a network with these devices, in words; empty: none.
+    [[nodiscard]] static std::string explain(const NetworkParams& network,
+                                             const NetworkProblem& problem);
 
 private:
     struct Parts;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <takt/core/clock_source.hpp>
 #include <takt/core/object_access.hpp>
@@ -64,6 +65,15 @@ public:
     core::ObjectReply upload(std::size_t position, core::ObjectAddress address);
     core::ObjectReply download(std::size_t position, core::ObjectAddress address,
                                const core::ObjectValue& value);
+
+    /// The same for values of any length, in segments where the mailbox is too small for the whole.
+    /// \param value is what was read, up to MostBytes; untouched when that failed
+    core::ObjectReply uploadLong(std::size_t position, core::ObjectAddress address,
+                                 std::vector<std::uint8_t>& value);
+    /// \param value 1 byte or more
+    core::ObjectReply downloadLong(std::size_t position, core::ObjectAddress address,
+                                   std::span<const std::uint8_t> value);
+    static constexpr std::size_t MostBytes = 65536;
 
     [[nodiscard]] const std::vector<SegmentDevice>& devices() const noexcept;
 
