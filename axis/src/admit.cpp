@@ -96,6 +96,28 @@ ErrorId admitRelative(const AxisView& view, Command& command) noexcept {
     return checkTarget(*view.traits, view.set + command.distance);
 }
 
+/// An additive move counts from the target of the discrete motion that it takes over.
+ErrorId admitAdditive(const AxisView& view, Command& command) noexcept {
+    if (!std::isfinite(command.distance.count())) return ErrorId::NotFinite;
+    if (const ErrorId bad = settleSpeed(view.traits->limits, command.dynamics.velocity);
+        bad != ErrorId::None) {
+        return bad;
+    }
+    const bool discrete = view.state == AxisState::DiscreteMotion;
+    command.position = discrete ? view.commandedPosition : view.set;
+    if (mustQueue(view, command)) return ErrorId::None;
+    return checkTarget(*view.traits, command.position + command.distance);
+}
+
+ErrorId admitContinuous(const AxisView& view, Command& command) noexcept {
+    const core::Velocity end = command.endVelocity;
+    if (!std::isfinite(end.count())) return ErrorId::NotFinite;
+    if (std::abs(end.count()) > view.traits->limits.velocity.count()) {
+        return ErrorId::LimitExceeded;
+    }
+    return isRelative(command.kind) ? admitRelative(view, command) : admitAbsolute(view, command);
+}
+
 ErrorId admitVelocity(const AxisView& view, Command& command) noexcept {
     if (const ErrorId bad = settleSignedVelocity(view, command); bad != ErrorId::None) return bad;
     if (mustQueue(view, command)) return ErrorId::None;
@@ -147,7 +169,12 @@ ErrorId stateForStop(const AxisView& view, const Command& command) noexcept {
 
 ErrorId admitMotion(const AxisView& view, Command& command) noexcept {
     if (const ErrorId bad = stateForMotion(view, command); bad != ErrorId::None) return bad;
-    if (command.bufferMode > BufferMode::Buffered) return ErrorId::BlendingNotPossible;
+    if (command.bufferMode > BufferMode::BlendingHigh) return ErrorId::InvalidParameter;
+    if (command.bufferMode > BufferMode::Buffered) {
+        // A motion without an end has no joint; homing begins at rest.
+        const bool endless = view.inMotion() && view.tailEndless;
+        if (endless || command.kind == CommandKind::Home) return ErrorId::BlendingNotPossible;
+    }
     if (command.kind == CommandKind::Home) {
         return std::isfinite(command.position.count()) ? ErrorId::None : ErrorId::NotFinite;
     }
@@ -173,6 +200,11 @@ ErrorId admitKind(const AxisView& view, Command& command) noexcept {
             return admitRelative(view, command);
         case CommandKind::MoveVelocity:
             return admitVelocity(view, command);
+        case CommandKind::MoveAdditive:
+            return admitAdditive(view, command);
+        case CommandKind::MoveContinuousAbsolute:
+        case CommandKind::MoveContinuousRelative:
+            return admitContinuous(view, command);
     }
     return ErrorId::InvalidParameter;
 }
@@ -184,7 +216,7 @@ void takeControl(AxisView& view, const Command& command) noexcept {
     view.stopDone = false;
     view.state = AxisState::DiscreteMotion;
     if (command.kind == CommandKind::Home) view.state = AxisState::Homing;
-    if (command.kind == CommandKind::MoveVelocity) view.state = AxisState::ContinuousMotion;
+    if (isEndless(command.kind)) view.state = AxisState::ContinuousMotion;
 }
 
 void notePowerOff(AxisView& view) noexcept {
@@ -268,6 +300,9 @@ bool doneAtOnce(const AxisView& view, const Command& command) noexcept {
         case CommandKind::MoveAbsolute:
         case CommandKind::MoveRelative:
         case CommandKind::MoveVelocity:
+        case CommandKind::MoveAdditive:
+        case CommandKind::MoveContinuousAbsolute:
+        case CommandKind::MoveContinuousRelative:
             break;
     }
     return false;
@@ -294,6 +329,9 @@ void noteAccepted(AxisView& view, const Command& command) noexcept {
         case CommandKind::MoveAbsolute:
         case CommandKind::MoveRelative:
         case CommandKind::MoveVelocity:
+        case CommandKind::MoveAdditive:
+        case CommandKind::MoveContinuousAbsolute:
+        case CommandKind::MoveContinuousRelative:
             break;
     }
     if (doneAtOnce(view, command)) return;
@@ -302,6 +340,7 @@ void noteAccepted(AxisView& view, const Command& command) noexcept {
     } else {
         takeControl(view, command);
     }
+    view.tailEndless = isEndless(command.kind);
 }
 
 }  // namespace takt::axis

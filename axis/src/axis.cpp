@@ -142,6 +142,7 @@ void Axis::updateHoming() noexcept {
     standAtActual();
     if (view_.state != AxisState::Homing) return;
     view_.commandedPosition = view_.actual;
+    publishSet();  // what comes next starts from here
     CommandStatus status{CommandPhase::Done, ErrorId::None};
     if (outcome == HomingOutcome::DriveError)
         status = {CommandPhase::Error, ErrorId::HomingDriveError};
@@ -174,9 +175,7 @@ void Axis::updateMotion() noexcept {
 
 void Axis::updateDiscrete() noexcept {
     if (!motion_.finished()) return;
-    const bool positions =
-        active_.kind == CommandKind::MoveAbsolute || active_.kind == CommandKind::MoveRelative;
-    if (positions && !inPosition()) return;
+    if (isPositioning(active_.kind) && !inPosition()) return;
     completeActive({CommandPhase::Done, ErrorId::None});
 }
 
@@ -220,6 +219,7 @@ void Axis::updateStopping() noexcept {
 
 void Axis::step() noexcept {
     if (planPending_) planActive();
+    if (jointPending_) speedUpJoint();
     if (drive_.following() && view_.state != AxisState::Disabled) {
         advance();
     } else {
@@ -240,6 +240,7 @@ void Axis::advance() noexcept {
         brakeByGate();
         return;
     }
+    if (motion_.atJoint()) passJoints();
     const planner::State next = view_.grouped ? led_ : motion_.next();
     const Position last = motion_.set().position;
     if (gate_.judge(next.position) != OutputGate::Verdict::Pass) {

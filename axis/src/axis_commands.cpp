@@ -24,6 +24,8 @@ void Axis::takeCommands(AxisPort& port) noexcept {
 void Axis::execute(const Command& request) noexcept {
     // The port has asked the same rules already; another program may have been faster in this
     // cycle.
+    // An additive move needs the target of one that was accepted in this very cycle.
+    if (request.kind == CommandKind::MoveAdditive && planPending_) planActive();
     const auto admitted = admit(view_, request);
     if (!admitted.ok()) {
         report(request.id, {CommandPhase::Error, admitted.error()});
@@ -49,6 +51,9 @@ void Axis::execute(const Command& request) noexcept {
         case CommandKind::MoveAbsolute:
         case CommandKind::MoveRelative:
         case CommandKind::MoveVelocity:
+        case CommandKind::MoveAdditive:
+        case CommandKind::MoveContinuousAbsolute:
+        case CommandKind::MoveContinuousRelative:
             executeMotion(command);
             return;
     }
@@ -62,6 +67,7 @@ void Axis::executeMotion(const Command& command) noexcept {
     if (mustQueue(view_, command)) {
         noteAccepted(view_, command);
         queue_.push(command);  // admit() has kept it inside the configured depth
+        jointPending_ = true;
         return;
     }
     endAll({CommandPhase::Aborted, ErrorId::None});
@@ -135,7 +141,10 @@ void Axis::planActive() noexcept {
     // Each round takes one command off the queue, so this ends.
     while (planPending_) {
         planPending_ = false;
-        const ErrorId bad = motion_.begin(active_);
+        const bool blends = !queue_.empty() && isPositioning(active_.kind);
+        const core::Velocity joint =
+            blends ? jointAt(motion_.set().position, motion_.goalOf(active_)) : core::Velocity{};
+        const ErrorId bad = motion_.begin(active_, joint);
         if (bad == ErrorId::None) {
             view_.commandedPosition = motion_.target();
             return;
@@ -179,8 +188,7 @@ void Axis::activateNext() noexcept {
                 view_.queued = left;
                 continue;
             }
-            noteAccepted(view_, admitted.value());
-            view_.queued = left;
+            noteTaken(admitted.value());
             report(next.id, {CommandPhase::Active, ErrorId::None});
             control(admitted.value());
             return;
@@ -190,6 +198,15 @@ void Axis::activateNext() noexcept {
         }
     }
     if (before != AxisState::Standstill) brake(CommandKind::Halt);
+}
+
+/// A command of the queue takes control; the others wait on.
+void Axis::noteTaken(const Command& command) noexcept {
+    Command taken = command;
+    taken.bufferMode = BufferMode::Aborting;
+    noteAccepted(view_, taken);
+    view_.queued = static_cast<std::uint8_t>(queue_.size());
+    if (!queue_.empty()) view_.tailEndless = isEndless(queue_.back().kind);
 }
 
 /// The axis' own stop, in the name of no block: kind Stop keeps the axis locked in Stopping until
@@ -202,6 +219,7 @@ void Axis::brake(CommandKind kind) noexcept {
     view_.active = CommandId::None;
     view_.inVelocity = false;
     view_.stopDone = false;
+    if (queue_.empty()) view_.tailEndless = false;
     if (kind == CommandKind::Stop) {
         view_.state = AxisState::Stopping;
         view_.stopReleased = true;

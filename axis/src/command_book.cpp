@@ -67,7 +67,7 @@ void CommandEvents::report(CommandId id, CommandStatus status) noexcept {
     ++count_;
 }
 
-void CommandEvents::deliver(CommandBook& book) const noexcept {
+void CommandEvents::handOver(CommandBook& book) const noexcept {
     std::uint64_t from = book.eventsSeen_;
     if (missedBy(book)) from = count_ - events_.size();
     for (; from != count_; ++from) book.note(events_[from % events_.size()]);

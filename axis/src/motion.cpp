@@ -5,6 +5,8 @@
 #include <takt/planner/profile_query.hpp>
 #include <takt/planner/take_over.hpp>
 
+#include "look_ahead.hpp"
+
 namespace takt::axis {
 
 using core::Acceleration;
@@ -37,22 +39,30 @@ Motion::Motion(const AxisTraits& traits, core::Duration cycle) noexcept
 void Motion::hold(Position position) noexcept {
     set_ = restAt(position);
     step_ = steps_ = 0;
+    joint_ = 0.0;
     resting_ = true;
     endsAtRest_ = true;
     guarded_ = false;
     limitHit_ = false;
 }
 
-ErrorId Motion::begin(const Command& command) noexcept {
+Position Motion::goalOf(const Command& command) const noexcept {
+    // An additive move counts from the target that was commanded last.
+    if (command.kind == CommandKind::MoveAdditive) return command.position + command.distance;
+    const bool modulo = traits_->period > Distance{} && !isRelative(command.kind);
+    if (modulo) return moduloTarget(command, holdingVelocity(command.dynamics));
+    return goalFrom(*traits_, command, set_.position, backward_);
+}
+
+ErrorId Motion::begin(const Command& command, Velocity joint) noexcept {
     const Dynamics dynamics = holdingVelocity(command.dynamics);
     switch (command.kind) {
-        case CommandKind::MoveAbsolute: {
-            const bool modulo = traits_->period > Distance{};
-            return beginPosition(modulo ? moduloTarget(command, dynamics) : command.position,
-                                 dynamics);
-        }
+        case CommandKind::MoveAbsolute:
         case CommandKind::MoveRelative:
-            return beginPosition(set_.position + command.distance, dynamics);
+        case CommandKind::MoveAdditive:
+        case CommandKind::MoveContinuousAbsolute:
+        case CommandKind::MoveContinuousRelative:
+            return beginMove(command, goalOf(command), dynamics, joint);
         case CommandKind::MoveVelocity:
             return beginVelocity(dynamics);
         case CommandKind::Halt:
@@ -144,12 +154,12 @@ ErrorId Motion::beginVelocity(const Dynamics& dynamics) noexcept {
     if (leaves) return ErrorId::SWLimitReached;
     run(profile.value());
     endsAtRest_ = wanted == Velocity{};
-    guardVelocity(dynamics);
+    guardVelocity(dynamics, wanted);
     return ErrorId::None;
 }
 
-void Motion::guardVelocity(const Dynamics& dynamics) noexcept {
-    const Velocity wanted = dynamics.velocity;
+/// \param wanted the velocity that will be kept
+void Motion::guardVelocity(const Dynamics& dynamics, Velocity wanted) noexcept {
     const auto& limit =
         wanted > Velocity{} ? traits_->limits.softPositive : traits_->limits.softNegative;
     if (wanted == Velocity{} || !limit) return;
@@ -157,9 +167,10 @@ void Motion::guardVelocity(const Dynamics& dynamics) noexcept {
     if (!stop) return;  // then the set position itself is watched
     guard_ = *limit;
     guardDynamics_ = dynamics;
+    guardDynamics_.velocity = wanted;
     stopDistance_ = stop->end - Position{};
     guarded_ = true;
-    const Position reached = profile_.end().position + stopDistance_;
+    const Position reached = end().position + stopDistance_;
     guardEarly_ = wanted > Velocity{} ? reached > guard_ : reached < guard_;
 }
 
@@ -205,8 +216,10 @@ State Motion::next() noexcept {
 }
 
 State Motion::stateAt(std::uint64_t step) const noexcept {
-    if (step >= steps_ && endsAtRest_) return profile_.end();
-    return planner::sample(profile_, Seconds{static_cast<double>(step) * cycle_});
+    if (step >= steps_ && endsAtRest_) return end();
+    const Seconds time{static_cast<double>(step) * cycle_ + lead_};
+    if (!staged_ || time < profile_.duration()) return planner::sample(profile_, time);
+    return planner::sample(second_, time - profile_.duration());
 }
 
 void Motion::accept(const State& state) noexcept {
@@ -232,14 +245,33 @@ void Motion::lead(const State& state) noexcept {
 
 void Motion::run(const planner::Profile& profile) noexcept {
     profile_ = profile;
-    step_ = 0;
-    const double cycles = profile.duration().count() / cycle_;
-    steps_ = static_cast<std::uint64_t>(std::ceil(std::max(0.0, cycles - kStepTolerance)));
-    target_ = profile.end().position;
+    staged_ = false;
+    start();
+}
+
+void Motion::runStaged(const planner::Profile& first, const planner::Profile& second) noexcept {
+    profile_ = first;
+    second_ = second;
+    staged_ = true;
+    start();
+}
+
+void Motion::start() noexcept {
+    startAt(0.0);
+    target_ = end().position;
+    joint_ = 0.0;
     resting_ = false;
     endsAtRest_ = true;
     guarded_ = false;
     limitHit_ = false;
+}
+
+/// The profile is `lead` seconds old at step 0.
+void Motion::startAt(double lead) noexcept {
+    lead_ = lead;
+    step_ = 0;
+    const double cycles = (duration().count() - lead) / cycle_;
+    steps_ = static_cast<std::uint64_t>(std::ceil(std::max(0.0, cycles - kStepTolerance)));
 }
 
 std::optional<Motion::Stop> Motion::stopFrom(const State& from,
@@ -279,33 +311,18 @@ planner::Limits Motion::moving(const Dynamics& d, bool forward, bool turns) cons
     return {d.velocity, -d.velocity, up, -down, d.jerk};
 }
 
-Position Motion::moduloTarget(const Command& command, const Dynamics& dynamics) noexcept {
-    const double period = traits_->period.count();
-    const double from = set_.position.count();
-    // Way forward in [0, period); less than half a count either way is "there already".
-    double forward = Scaling::foldInto(
-        Scaling::foldInto(command.position.count(), period) - Scaling::foldInto(from, period),
-        period);
-    const double tolerance = traits_->resolution.count() / 2.0;
-    const bool there = forward < tolerance || period - forward < tolerance;
-    if (there && period - forward < tolerance) forward -= period;
-    const double backward = there ? forward : forward - period;
-
-    if (command.direction == Direction::ShortestWay) {
-        return Position{from + (forward <= period / 2.0 ? forward : backward)};
-    }
+Position Motion::moduloTarget(const Command& command, const Dynamics& dynamics) const noexcept {
+    const Position goal = goalFrom(*traits_, command, set_.position, backward_);
+    if (!underWay() || command.direction == Direction::ShortestWay) return goal;
+    // Not to be stopped in time: as many more turns as braking takes.
     bool up = command.direction == Direction::Positive;
     if (command.direction == Direction::Current) up = !backward_;
-    double travel = up ? forward : backward;
-    if (underWay()) {
-        // Not to be stopped in time: as many more turns as braking takes.
-        const auto stop = stopFrom(set_, dynamics);
-        const Position farthest = stop ? (up ? stop->highest : stop->lowest) : set_.position;
-        const double braking = (farthest - set_.position).count();
-        const double missing = up ? braking - travel : travel - braking;
-        if (missing > 0.0) travel += (up ? period : -period) * std::ceil(missing / period);
-    }
-    return Position{from + travel};
+    const auto stop = stopFrom(set_, dynamics);
+    const Position farthest = stop ? (up ? stop->highest : stop->lowest) : set_.position;
+    const double missing = up ? (farthest - goal).count() : (goal - farthest).count();
+    if (missing <= 0.0) return goal;
+    const double period = traits_->period.count();
+    return goal + Distance{(up ? period : -period) * std::ceil(missing / period)};
 }
 
 }  // namespace takt::axis

@@ -40,4 +40,39 @@ void MC_MoveVelocity::operator()(axis::AxisRef axis) noexcept {
                  axis.port().view().active == command() && axis.port().view().inVelocity;
 }
 
+void MC_MoveAdditive::operator()(axis::AxisRef axis) noexcept {
+    const axis::CommandPhase phase = runMotion(axis, [this]() noexcept {
+        axis::Command command = request(axis::CommandKind::MoveAdditive);
+        command.distance = core::Distance{Distance};
+        return command;
+    });
+    Done = phase == axis::CommandPhase::Done;
+}
+
+void ContinuousMoveBlock::showEnd(const axis::AxisRef& axis, axis::CommandPhase phase) noexcept {
+    InEndVelocity = phase == axis::CommandPhase::Active && axis.valid() &&
+                    axis.port().view().active == command() && axis.port().view().inVelocity;
+}
+
+void MC_MoveContinuousAbsolute::operator()(axis::AxisRef axis) noexcept {
+    const axis::CommandPhase phase = runMotion(axis, [this]() noexcept {
+        axis::Command request = this->request(axis::CommandKind::MoveContinuousAbsolute);
+        request.position = core::Position{Position};
+        request.direction = toAxis(Direction);
+        request.endVelocity = core::Velocity{EndVelocity};
+        return request;
+    });
+    showEnd(axis, phase);
+}
+
+void MC_MoveContinuousRelative::operator()(axis::AxisRef axis) noexcept {
+    const axis::CommandPhase phase = runMotion(axis, [this]() noexcept {
+        axis::Command request = this->request(axis::CommandKind::MoveContinuousRelative);
+        request.distance = core::Distance{Distance};
+        request.endVelocity = core::Velocity{EndVelocity};
+        return request;
+    });
+    showEnd(axis, phase);
+}
+
 }  // namespace takt::plcopen

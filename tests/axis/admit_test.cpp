@@ -184,10 +184,22 @@ TEST_F(Admit, AnswersMotionByTheState) {
     }
 }
 
-TEST_F(Admit, RefusesBlending) {
+TEST_F(Admit, RefusesBlendingOfMotionThatHasNoEnd) {
     auto c = moveTo(1.0);
     c.bufferMode = axis::BufferMode::BlendingLow;
+    EXPECT_EQ(judge(c), ErrorId::None);
+    view.tailEndless = true;
+    EXPECT_EQ(judge(c), ErrorId::None);  // of what has ended
+    view.state = AxisState::ContinuousMotion;
     EXPECT_EQ(judge(c), ErrorId::BlendingNotPossible);
+    EXPECT_EQ(judge(buffered(moveTo(1.0))), ErrorId::None);
+    auto home = command(CommandKind::Home);
+    view.state = AxisState::DiscreteMotion;
+    view.tailEndless = false;
+    home.bufferMode = axis::BufferMode::BlendingNext;
+    EXPECT_EQ(judge(home), ErrorId::BlendingNotPossible);
+    c.bufferMode = static_cast<axis::BufferMode>(6);
+    EXPECT_EQ(judge(c), ErrorId::InvalidParameter);
 }
 
 TEST_F(Admit, RefusesWhenTheQueueIsFull) {

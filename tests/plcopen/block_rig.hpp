@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <takt/plcopen/plcopen.hpp>
 
 #include "../axis/axis_rig.hpp"
@@ -23,6 +24,12 @@ void expectExclusive(const Move& b) {
 inline void expectExclusive(const MC_MoveVelocity& b) {
     expectExclusive(b.Busy, b.Active, false, b.Error, b.CommandAborted, b.ErrorID);
     EXPECT_TRUE(!b.InVelocity || b.Active);
+}
+template <typename Move>
+requires std::derived_from<Move, ContinuousMoveBlock>
+void expectExclusive(const Move& b) {
+    expectExclusive(b.Busy, b.Active, false, b.Error, b.CommandAborted, b.ErrorID);
+    EXPECT_TRUE(!b.InEndVelocity || b.Active);
 }
 inline void expectExclusive(const MC_Stop& b) {
     // The lock after Done is shown by Active; see the block's own words.

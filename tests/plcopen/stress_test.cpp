@@ -47,7 +47,8 @@ public:
         for (int i = 0; i < cycles && !testing::Test::HasFailure(); ++i) {
             stir();
             hurt();
-            rig.call(moves_[0], moves_[1], relative_, velocity_, halt_, stop_, home_, reset_);
+            rig.call(moves_[0], moves_[1], relative_, additive_, continuous_, velocity_, halt_,
+                     stop_, home_, reset_);
             checkState();
         }
     }
@@ -67,8 +68,8 @@ private:
         b.Acceleration = random_.value(50.0, 5000.0);
         b.Deceleration = random_.value(50.0, 4000.0);
         b.Jerk = random_.value(500.0, 100000.0);
-        b.BufferMode =
-            random_.chance(0.4) ? MC_BUFFER_MODE::mcBuffered : MC_BUFFER_MODE::mcAborting;
+        b.BufferMode = random_.chance(0.6) ? static_cast<MC_BUFFER_MODE>(1 + random_.next() % 5)
+                                           : MC_BUFFER_MODE::mcAborting;
     }
     void stir() {
         for (auto& move : moves_) {
@@ -80,6 +81,13 @@ private:
         dynamics(relative_);
         relative_.Distance = random_.between(-50.0, 50.0);
         toggle(relative_, 0.01);
+        dynamics(additive_);
+        additive_.Distance = random_.between(-50.0, 50.0);
+        toggle(additive_, 0.01);
+        dynamics(continuous_);
+        continuous_.Distance = random_.between(-50.0, 50.0);
+        continuous_.EndVelocity = random_.between(-300.0, 300.0);
+        toggle(continuous_, 0.01);
         dynamics(velocity_);
         velocity_.Direction = static_cast<MC_DIRECTION>(1 + random_.next() % 4);
         toggle(velocity_, 0.01);
@@ -125,6 +133,8 @@ private:
     double hash_{0.0};
     std::array<MC_MoveAbsolute, 2> moves_;
     MC_MoveRelative relative_;
+    MC_MoveAdditive additive_;
+    MC_MoveContinuousRelative continuous_;
     MC_MoveVelocity velocity_;
     MC_Halt halt_;
     MC_Stop stop_;

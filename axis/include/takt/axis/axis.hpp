@@ -149,11 +149,18 @@ private:
     void control(const Command& command) noexcept;
     void planActive() noexcept;
     void activateNext() noexcept;
+    void noteTaken(const Command& command) noexcept;
     void completeActive(CommandStatus outcome) noexcept;
     void brake(CommandKind kind) noexcept;
     void endAll(CommandStatus outcome) noexcept;
     void enterStandstill() noexcept;
     void report(CommandId id, CommandStatus status) noexcept { events_.report(id, status); }
+
+    // axis_joint.cpp: from one command into the next without a stop
+    /// At which speed the command in control is to pass its end.
+    [[nodiscard]] core::Velocity jointAt(core::Position from, core::Position goal) const noexcept;
+    void speedUpJoint() noexcept;
+    void passJoints() noexcept;
 
     // axis_supervision.cpp: errors, power, reset
     void supervise() noexcept;
@@ -185,6 +192,7 @@ private:
     Command active_{};
     core::FixedVector<Command, MaxQueue> queue_{};
     bool planPending_{false};
+    bool jointPending_{false};  ///< the queue has grown: the joint ahead may be passed faster
     bool homingRunning_{false};
     bool powerBlocked_{false};   ///< off until the reset, whatever MC_Power asks
     bool dropAfterRamp_{false};  ///< the drive is stopped once the set-points rest

@@ -47,9 +47,11 @@ struct AxisView {
     bool homed{false};
     bool inputsValid{false};  ///< actual values are of this cycle, or bridged over a tolerated loss
     bool atRest{true};        ///< set velocity and acceleration are zero
-    bool inVelocity{false};   ///< the MoveVelocity in control has reached its velocity
-    bool stopDone{false};     ///< Stopping at velocity zero
-    bool stopReleased{true};  ///< Stopping ends with velocity zero
+    bool inVelocity{false};   ///< the endless command in control has reached its (end) velocity
+    bool tailEndless{
+        false};            ///< the command accepted last goes on for ever: nothing blends into it
+    bool stopDone{false};  ///< Stopping at velocity zero
+    bool stopReleased{true};      ///< Stopping ends with velocity zero
     bool movedBackward{false};    ///< direction of the last motion
     bool grouped{false};          ///< its group moves it
     bool machineStop{false};      ///< the machine stop holds the axis: no motion, no power

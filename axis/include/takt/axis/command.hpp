@@ -21,6 +21,9 @@ enum class CommandKind : std::uint8_t {
     MoveAbsolute,
     MoveRelative,
     MoveVelocity,
+    MoveAdditive,
+    MoveContinuousAbsolute,
+    MoveContinuousRelative,
 };
 
 /// MC_BUFFER_MODE, numbers as in the standard.
@@ -51,9 +54,10 @@ struct Command {
     CommandKind kind{CommandKind::Halt};
     BufferMode bufferMode{BufferMode::Aborting};
     Direction direction{Direction::ShortestWay};
-    core::Position position{};  ///< MoveAbsolute: target; Home: value at the reference
-    core::Distance distance{};  ///< MoveRelative
-    Dynamics dynamics{};        ///< MoveVelocity: `velocity` is signed
+    core::Position position{};     ///< of an absolute move: target; Home: value at the reference
+    core::Distance distance{};     ///< of a relative move
+    core::Velocity endVelocity{};  ///< of a continuous move, signed
+    Dynamics dynamics{};           ///< MoveVelocity: `velocity` is signed
 };
 
 /// Where a command stands.
@@ -73,6 +77,23 @@ struct CommandEvent {
 /// Takes the axis' motion: Halt, Home and the moves. Stop is a kind of its own.
 [[nodiscard]] constexpr bool isMotion(CommandKind kind) noexcept {
     return kind >= CommandKind::Halt;
+}
+
+/// Goes to a position, whatever it does there.
+[[nodiscard]] constexpr bool isPositioning(CommandKind kind) noexcept {
+    return kind >= CommandKind::MoveAbsolute && kind != CommandKind::MoveVelocity;
+}
+
+/// Counts its way from where it takes control.
+[[nodiscard]] constexpr bool isRelative(CommandKind kind) noexcept {
+    return kind == CommandKind::MoveRelative || kind == CommandKind::MoveAdditive ||
+           kind == CommandKind::MoveContinuousRelative;
+}
+
+/// Goes on until another command takes the axis: ContinuousMotion.
+[[nodiscard]] constexpr bool isEndless(CommandKind kind) noexcept {
+    return kind == CommandKind::MoveVelocity || kind == CommandKind::MoveContinuousAbsolute ||
+           kind == CommandKind::MoveContinuousRelative;
 }
 
 }  // namespace takt::axis

@@ -61,9 +61,13 @@ public:
         return count_ - book.eventsSeen_ > events_.size();
     }
     /// rt. Hands over what the book has not seen yet.
-    void deliver(CommandBook& book) const noexcept;
+    void deliver(CommandBook& book) const noexcept {
+        if (book.eventsSeen_ != count_) handOver(book);  // in most cycles there is nothing
+    }
 
 private:
+    void handOver(CommandBook& book) const noexcept;
+
     std::array<CommandEvent, CommandBook::Remembered> events_{};
     std::uint64_t count_{0};
 };

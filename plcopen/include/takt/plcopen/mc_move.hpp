@@ -45,6 +45,54 @@ public:
     void operator()(axis::AxisRef axis) noexcept;
 };
 
+/// Goes Distance on from the target of the discrete motion that it takes over; otherwise from the
+/// set position at the moment it takes control.
+class MC_MoveAdditive : public MoveBlock {
+public:
+    double Distance{0.0};  ///< u, signed
+
+    bool Done{false};
+
+    /// rt. One call per cycle.
+    void operator()(axis::AxisRef axis) noexcept;
+};
+
+/// What moves have in common that reach a position with a velocity and keep that until another
+/// command takes the axis. EndVelocity above Velocity is reached by a last ramp before the
+/// position. ProfileNotFeasible where the way is too short for EndVelocity in its direction.
+class ContinuousMoveBlock : public MoveBlock {
+public:
+    double EndVelocity{0.0};  ///< u/s, signed
+
+    bool InEndVelocity{false};  ///< in control, past the position, at EndVelocity
+
+protected:
+    ContinuousMoveBlock() = default;
+    ~ContinuousMoveBlock() = default;
+
+    void showEnd(const axis::AxisRef& axis, axis::CommandPhase phase) noexcept;
+};
+
+/// Goes to Position, reaches it with EndVelocity and goes on with that.
+class MC_MoveContinuousAbsolute : public ContinuousMoveBlock {
+public:
+    double Position{0.0};  ///< u; on a modulo axis folded into one period
+    MC_DIRECTION Direction{MC_DIRECTION::mcShortestWay};  ///< modulo axes only
+
+    /// rt. One call per cycle.
+    void operator()(axis::AxisRef axis) noexcept;
+};
+
+/// Goes Distance from the set position at the moment it takes control, ends it with EndVelocity and
+/// goes on with that.
+class MC_MoveContinuousRelative : public ContinuousMoveBlock {
+public:
+    double Distance{0.0};  ///< u, signed
+
+    /// rt. One call per cycle.
+    void operator()(axis::AxisRef axis) noexcept;
+};
+
 /// Runs with Velocity · sign of Direction until another command takes the axis.
 class MC_MoveVelocity : public MoveBlock {
 public:
