@@ -18,7 +18,7 @@ install(TARGETS takt_command takt_library EXPORT takt-targets
 foreach(room core wire fieldbus twin scheduler record bridge program daemon cli)
     install(DIRECTORY runtime/${room}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
-foreach(room planner axis plcopen config)
+foreach(room planner planner/roadmap axis plcopen config)
     install(DIRECTORY ${room}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
 install(FILES ${CMAKE_BINARY_DIR}/runtime/program/include/takt/program/version.hpp

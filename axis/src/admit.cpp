@@ -1,6 +1,8 @@
 #include <cmath>
 #include <takt/axis/admit.hpp>
 
+#include "settle.hpp"
+
 namespace takt::axis {
 
 namespace {
@@ -9,14 +11,6 @@ namespace {
 template <typename T>
 constexpr T larger(T a, T b) noexcept {
     return a < b ? b : a;
-}
-
-/// Fills in the default for 0 and judges an acceleration, deceleration or jerk.
-template <typename T>
-ErrorId settle(T& value, T byDefault, T limit) noexcept {
-    if (!std::isfinite(value.count()) || value < T{0.0}) return ErrorId::InvalidParameter;
-    if (value == T{0.0}) value = byDefault;
-    return limit < value ? ErrorId::LimitExceeded : ErrorId::None;
 }
 
 ErrorId settleDynamics(const LimitParams& limits, Command& command) noexcept {
@@ -126,6 +120,7 @@ ErrorId stateForMotion(const AxisView& view, const Command& command) noexcept {
         case AxisState::SynchronizedMotion:
             break;
     }
+    if (view.grouped) return ErrorId::AxisInGroup;
     // Homing starts from Standstill only; waiting for it in the queue is allowed.
     if (command.kind == CommandKind::Home && !buffered) return ErrorId::InvalidState;
     return ErrorId::None;

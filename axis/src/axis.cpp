@@ -240,7 +240,7 @@ void Axis::advance() noexcept {
         brakeByGate();
         return;
     }
-    const planner::State next = motion_.next();
+    const planner::State next = view_.grouped ? led_ : motion_.next();
     const Position last = motion_.set().position;
     if (gate_.judge(next.position) != OutputGate::Verdict::Pass) {
         refuse(ErrorId::SetpointJump,
@@ -249,12 +249,17 @@ void Axis::advance() noexcept {
         refuse(ErrorId::SWLimitReached, {next.position.count(), limit->count(), 0.0});
     } else {
         gate_.accept(next.position);
-        motion_.accept(next);
+        if (view_.grouped) {
+            motion_.lead(next);
+        } else {
+            motion_.accept(next);
+        }
     }
 }
 
 void Axis::refuse(ErrorId error, Numbers numbers) noexcept {
-    // The value never leaves: the axis brakes from its last good state.
+    // The value never leaves: the axis brakes from its last good state, and by itself.
+    view_.grouped = false;
     raise(error, numbers, Reaction::Ramp);
     const planner::State next = motion_.next();
     if (emergency_ || gate_.judge(next.position) != OutputGate::Verdict::Pass) {

@@ -5,29 +5,20 @@ namespace takt::axis {
 
 void Axis::openPort(AxisPort& port) const noexcept {
     port.open(view_);
-    std::uint64_t from = port.eventsSeen();
-    if (eventCount_ - from > events_.size()) {
+    if (events_.missedBy(port.book())) {
         core::FixedVector<CommandId, MaxQueue + 16> alive;
         alive.push(view_.active);
         for (const Command& queued : queue_) alive.push(queued.id);
         for (const CommandId id : resets_) alive.push(id);
-        port.forgetAllBut({alive.begin(), alive.size()});
-        from = eventCount_ - events_.size();
+        port.book().forgetAllBut({alive.begin(), alive.size()});
     }
-    for (; from != eventCount_; ++from) port.note(events_[from % events_.size()]);
-    port.setEventsSeen(eventCount_);
+    events_.deliver(port.book());
 }
 
 void Axis::takeCommands(AxisPort& port) noexcept {
     for (const Command& command : port.commands()) execute(command);
     port.close();
     applyPower();
-}
-
-void Axis::report(CommandId id, CommandStatus status) noexcept {
-    if (id == CommandId::None) return;
-    events_[eventCount_ % events_.size()] = {id, status};
-    ++eventCount_;
 }
 
 void Axis::execute(const Command& request) noexcept {
@@ -93,7 +84,7 @@ void Axis::executeStop(const Command& command) noexcept {
         drive_.cancelHoming();
         view_.homed = false;
     } else {
-        planPending_ = !homingRunning_;
+        planPending_ = !homingRunning_ && !view_.grouped;
     }
 }
 
@@ -110,6 +101,7 @@ void Axis::executePowerOff(const Command& command) noexcept {
     }
     planPending_ = false;
     homingRunning_ = false;
+    view_.grouped = false;
     motion_.hold(motion_.set().position);
 }
 
@@ -220,7 +212,8 @@ void Axis::brake(CommandKind kind) noexcept {
         drive_.cancelHoming();
         planPending_ = false;
     } else {
-        planPending_ = !motion_.resting();
+        // A grouped axis stops on the path of its group.
+        planPending_ = !motion_.resting() && !view_.grouped;
     }
 }
 
@@ -266,6 +259,7 @@ void Axis::quickStop() noexcept {
     if (view_.state != AxisState::ErrorStop) view_.state = AxisState::Disabled;
     planPending_ = false;
     homingRunning_ = false;
+    view_.grouped = false;
     motion_.hold(motion_.set().position);
     drive_.switchOff(SwitchOff::QuickStop);
 }

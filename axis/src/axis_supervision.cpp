@@ -98,7 +98,8 @@ void Axis::raise(ErrorId id, Numbers numbers, Reaction reaction) noexcept {
         view_.inVelocity = false;
         view_.stopDone = false;
         view_.stopReleased = true;
-        if (drive_.following() && !motion_.beginStop()) emergency_ = true;
+        // A grouped axis stops on the path of its group.
+        if (drive_.following() && !view_.grouped && !motion_.beginStop()) emergency_ = true;
     }
     react(reaction);
 }
@@ -179,6 +180,7 @@ ErrorId Axis::resetObstacle() const noexcept {
 void Axis::finishReset(ErrorId error) noexcept {
     const CommandPhase phase = error == ErrorId::None ? CommandPhase::Done : CommandPhase::Error;
     for (const CommandId id : resets_) report(id, {phase, error});
+    resetError_ = error;
     resets_.clear();
     drive_.forgetReset();
 }

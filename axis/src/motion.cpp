@@ -222,6 +222,14 @@ void Motion::force(Position position, Velocity velocity) noexcept {
     resting_ = velocity == Velocity{};
 }
 
+void Motion::lead(const State& state) noexcept {
+    hold(state.position);
+    set_ = state;
+    resting_ = false;
+    if (state.velocity > Velocity{}) backward_ = false;
+    if (state.velocity < Velocity{}) backward_ = true;
+}
+
 void Motion::run(const planner::Profile& profile) noexcept {
     profile_ = profile;
     step_ = 0;

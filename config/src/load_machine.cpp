@@ -70,6 +70,39 @@ std::vector<AxisPart> readAxes(ElementReader& machine, NetworkPart& network) {
     return axes;
 }
 
+std::vector<axis::GroupParams> readGroups(ElementReader& machine,
+                                          const std::vector<AxisPart>& axes) {
+    std::vector<axis::GroupParams> groups;
+    UniqueNames names{"a group"};
+    for (const XmlElement element : boundedChildren(machine, "Group")) {
+        const ElementReader reader{element, "group", machine.place().file, machine.diagnostics()};
+        groups.push_back(readGroup(reader, axes));
+        names.add(groups.back().name, reader);
+    }
+    return groups;
+}
+
+std::vector<planner::roadmap::ObstacleParams> readAllObstacles(
+    ElementReader& machine, const std::vector<AxisPart>& axes,
+    const std::vector<axis::GroupParams>& groups) {
+    std::vector<planner::roadmap::ObstacleParams> all;
+    std::map<std::size_t, int> lines;  // of the obstacles of each group
+    for (const XmlElement element : boundedChildren(machine, "Obstacles")) {
+        const ElementReader reader{element, "obstacles", machine.place().file,
+                                   machine.diagnostics()};
+        auto obstacles = readObstacles(reader, axes, groups);
+        if (!obstacles) continue;
+        const auto [first, fresh] = lines.emplace(obstacles->group, element.line());
+        if (!fresh) {
+            reader.error("group",
+                         fmt::format("the group has obstacles in line {} already", first->second),
+                         "one <Obstacles> for each group", "put them together");
+        }
+        all.push_back(std::move(*obstacles));
+    }
+    return all;
+}
+
 std::vector<program::ProgramParams> readPrograms(ElementReader& machine, const Folders& folders,
                                                  ProgramLibraries libraries) {
     std::vector<program::ProgramParams> programs;
@@ -104,6 +137,8 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     Folders folders{folder};
     folders.insert(folders.end(), librarySearch.begin(), librarySearch.end());
     machine.programs = readPrograms(root, folders, libraries);
+    machine.groups = readGroups(root, axes);
+    machine.obstacles = readAllObstacles(root, axes, machine.groups);
     machine.machineStop = readMachineStop(root.childReader("MachineStop"), network, axes);
     machine.twin = readTwin(root.childReader("Twin"), network, axes);
     readRealtime(root.childReader("Realtime"), machine.scheduler);

@@ -78,6 +78,15 @@ void addDriveObjects(SlavePart& slave, const AxisPart& axis, std::uint32_t lostL
 /// Reads an <Axis> and ties it to its slave.
 [[nodiscard]] AxisPart readAxis(ElementReader reader, NetworkPart& network);
 
+/// Reads a <Group> of the axes.
+[[nodiscard]] axis::GroupParams readGroup(ElementReader reader, const std::vector<AxisPart>& axes);
+
+/// Reads the <Obstacles> of a group.
+/// \return nothing when it is of no group
+[[nodiscard]] std::optional<planner::roadmap::ObstacleParams> readObstacles(
+    ElementReader reader, const std::vector<AxisPart>& axes,
+    const std::vector<axis::GroupParams>& groups);
+
 /// Reads <Twin>; there is one device for each slave, whatever the file says.
 [[nodiscard]] twin::TwinParams readTwin(ElementReader reader, NetworkPart& network,
                                         const std::vector<AxisPart>& axes);

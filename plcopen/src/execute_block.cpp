@@ -13,7 +13,8 @@ constexpr bool pending(CommandPhase phase) noexcept {
 
 }  // namespace
 
-CommandPhase ExecuteBlock::show(bool edge) noexcept {
+template <typename Ref, typename Command>
+CommandPhase CommandBlock<Ref, Command>::show(bool edge) noexcept {
     pending_ = pending(status_.phase);
     // An end that has been shown goes with Execute; one that comes later is shown for one call.
     if (!pending_) {
@@ -30,32 +31,30 @@ CommandPhase ExecuteBlock::show(bool edge) noexcept {
     return status_.phase;
 }
 
-void ExecuteBlock::start(const axis::AxisRef& axis, const axis::Command& request) noexcept {
-    if (!axis.valid()) {
-        status_ = {CommandPhase::Error, ErrorId::NullReference};
-        return;
-    }
-    axis::Command command = request;
-    command.replaces = id_;
-    const auto accepted = axis.port().submit(command);
+template <typename Ref, typename Command>
+void CommandBlock<Ref, Command>::accept(const Ref& ref, const Accepted& accepted) noexcept {
     if (!accepted.ok()) {
         status_ = {CommandPhase::Error, accepted.error()};
         return;
     }
-    axis_ = axis;
+    ref_ = ref;
     id_ = accepted.value();
-    status_ = axis.port().status(id_);
+    status_ = ref.port().status(id_);
 }
 
-void ExecuteBlock::follow() noexcept {
-    if (!axis_.valid()) {
+template <typename Ref, typename Command>
+void CommandBlock<Ref, Command>::follow() noexcept {
+    if (!ref_.valid()) {
         status_ = {CommandPhase::Error, ErrorId::NullReference};
         return;
     }
-    status_ = axis_.port().status(id_);
+    status_ = ref_.port().status(id_);
     if (status_.phase == CommandPhase::Unknown) {
         status_ = {CommandPhase::Error, ErrorId::OutcomeUnknown};
     }
 }
+
+template class CommandBlock<axis::AxisRef, axis::Command>;
+template class CommandBlock<axis::GroupRef, axis::GroupCommand>;
 
 }  // namespace takt::plcopen

@@ -5,29 +5,31 @@ namespace takt::plcopen {
 using axis::AxisState;
 using axis::AxisView;
 
-const AxisView* ReadBlock::read(const axis::AxisRef& axis, bool needsInputs) noexcept {
+bool ReadBlock::begin(bool valid) noexcept {
     Valid = Busy = Error = false;
     ErrorID = axis::ErrorId::None;
     if (!Enable) {
-        refused_ = false;
-        return nullptr;
+        refused_ = axis::ErrorId::None;
+        return false;
     }
-    refused_ = refused_ || !axis.valid();
-    if (refused_) {
-        Error = true;
-        ErrorID = axis::ErrorId::NullReference;
-        return nullptr;
+    if (!valid && refused_ == axis::ErrorId::None) refused_ = axis::ErrorId::NullReference;
+    if (refused_ != axis::ErrorId::None) {
+        refuse(refused_);
+        return false;
     }
     Busy = true;
-    const AxisView& view = axis.port().view();
-    // Recoverable: the block is ready again when the bus is.
-    if (view.traits == nullptr || (needsInputs && !view.inputsValid)) return nullptr;
-    Valid = true;
-    return &view;
+    return true;
+}
+
+void ReadBlock::refuse(axis::ErrorId error) noexcept {
+    refused_ = error;
+    Valid = Busy = false;
+    Error = true;
+    ErrorID = error;
 }
 
 void MC_ReadStatus::operator()(axis::AxisRef axis) noexcept {
-    const AxisView* const view = read(axis, false);
+    const AxisView* const view = read(axis, [](const AxisView&) noexcept { return true; });
     const auto is = [view](AxisState state) { return view != nullptr && view->state == state; };
     ErrorStop = is(AxisState::ErrorStop);
     Disabled = is(AxisState::Disabled);
@@ -40,12 +42,13 @@ void MC_ReadStatus::operator()(axis::AxisRef axis) noexcept {
 }
 
 void MC_ReadActualPosition::operator()(axis::AxisRef axis) noexcept {
-    const AxisView* const view = read(axis, true);
+    const AxisView* const view =
+        read(axis, [](const AxisView& seen) noexcept { return seen.inputsValid; });
     Position = view != nullptr ? view->folded(view->actual).count() : 0.0;
 }
 
 void MC_ReadAxisError::operator()(axis::AxisRef axis) noexcept {
-    const AxisView* const view = read(axis, false);
+    const AxisView* const view = read(axis, [](const AxisView&) noexcept { return true; });
     AxisErrorID = 0;
     if (view == nullptr) return;
     ErrorID = view->error.id;

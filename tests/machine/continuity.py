@@ -57,6 +57,8 @@ def read_trace(path):
     axes = {}
     for name, values in zip(header[2:], columns[2:]):
         axis, _, quantity = name.rpartition(".")
+        if axis + ".set" not in header:
+            continue  # a group: its axes are judged
         values = list(values)
         if quantity in NUMBERS:
             values = [float(v) for v in values]

@@ -164,6 +164,7 @@ class Machine:
         if network is None:
             raise MachineError(f"{path}: no <Network>")
         self.axes = {axis.get("name"): axis for axis in root.iter("Axis")}
+        self.groups = {group.get("name"): group for group in root.iter("Group")}
         if network.get("eni") is not None:
             self.cycle, self.drive_types, self.slaves = eni_network(path.parent / network.get("eni"))
             return
@@ -185,6 +186,17 @@ class Machine:
             outputs = outputs or 0x1600 <= index < 0x1800
             inputs = inputs or 0x1A00 <= index < 0x1C00
         return Slave(element.get("name"), outputs, inputs)
+
+    def group_limits(self, name):
+        """Limits along the path of a group: velocity, acceleration (the larger way), jerk."""
+        if name not in self.groups:
+            raise MachineError(f"no group {name}; the file has {', '.join(self.groups) or 'none'}")
+        limits = child(self.groups[name], "Limits", name)
+        up = float(motion(attribute(limits, "acceleration", name)))
+        steepest = max(up, float(motion(limits.get("deceleration"))) if limits.get("deceleration") else up)
+        jerk = limits.get("jerk")
+        return {"velocity": float(motion(attribute(limits, "velocity", name))), "acceleration": steepest,
+                "jerk": float(motion(jerk)) if jerk else RAMPS_PER_SECOND * steepest}
 
     def axis(self, name):
         if name not in self.axes:

@@ -78,6 +78,8 @@ void addRun(CLI::App& app, RunArguments& run) {
     command->add_option("--for", run.length, "stop after this time in operation, e.g. 10s");
     command->add_option("--trace", options.trace, "write every cycle to this CSV file");
     command->add_option("--plot", options.plot, "draw the run into this SVG file");
+    command->add_option("--top-view", options.topView,
+                        "draw the way of a group among its keep-outs into this SVG file");
     command->add_option("--pcap", options.capture, "write every frame to this pcapng file");
     command->add_option(
         "--program-watchdog", run.watchdog,

@@ -45,6 +45,11 @@ std::string statusTable(const daemon::StatusReport& status) {
                             axis.name, width, axis.state, axis.set, axis.actual, axis.velocity,
                             axis.lag, axis.unit, noteOf(axis));
     }
+    for (const auto& group : status.groups) {
+        text += fmt::format("group {}  {:<18} path {:.3f} {}, {:.3f} {}/s, {} waiting  {}\n",
+                            group.name, group.state, group.path, group.unit, group.velocity,
+                            group.unit, group.queued, group.error);
+    }
     for (const auto& program : status.programs) {
         text += fmt::format("\nprogram '{}' {}\n", program.name, program.state);
         for (const auto& watch : program.watches)

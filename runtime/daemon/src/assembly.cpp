@@ -43,7 +43,8 @@ LoadedPrograms loadPrograms(const config::MachineConfig& machine, std::vector<Li
             return;
         }
         const auto number = static_cast<std::uint16_t>(programs.hosts.size() + 1);
-        programs.hosts.emplace_back(params, std::move(loaded.program), machine.axes.size(), number);
+        programs.hosts.emplace_back(params, std::move(loaded.program), machine.axes.size(),
+                                    machine.groups.size(), number);
         programs.factories.push_back(std::move(factory));
     };
     for (const program::ProgramParams& params : machine.programs) {
@@ -72,6 +73,13 @@ void makeAxes(const config::MachineConfig& machine, Axes& axes) {
     for (const axis::AxisParams& params : machine.axes) {
         axes.emplace_back(params, machine.network.cycle);
     }
+}
+
+void makeGroups(const config::MachineConfig& machine, Axes& axes, Groups& groups) {
+    std::vector<axis::Axis*> all;
+    for (axis::Axis& axis : axes) all.push_back(&axis);
+    for (const axis::GroupParams& params : machine.groups)
+        groups.emplace_back(params, all, machine.network.cycle);
 }
 
 axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave,

@@ -30,6 +30,9 @@ LoadedPrograms loadPrograms(const config::MachineConfig& machine, std::vector<Li
 /// The machine's axes, not yet bound to a bus, at the end of `axes`.
 void makeAxes(const config::MachineConfig& machine, Axes& axes);
 
+/// Its groups of these axes, at the end of `groups`.
+void makeGroups(const config::MachineConfig& machine, Axes& axes, Groups& groups);
+
 /// Where each drive's objects lie in its device's process data: where `bound` says it, else where
 /// they are mapped.
 axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave,

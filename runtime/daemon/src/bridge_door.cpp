@@ -24,6 +24,8 @@ bridge::StatusSetup setupOf(const config::MachineConfig& machine) {
     setup.cycle = machine.network.cycle;
     setup.dds = machine.bridge.dds;
     for (const axis::AxisParams& axis : machine.axes) setup.axes.push_back({axis.name, axis.unit});
+    for (const axis::GroupParams& group : machine.groups)
+        setup.groups.push_back({group.name, group.unit});
     return setup;
 }
 

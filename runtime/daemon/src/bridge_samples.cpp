@@ -28,6 +28,9 @@ static_assert(same(bridge::StopCause::ProgramFault, StopCause::ProgramFault));
 static_assert(same(bridge::AxisState::Standstill, axis::AxisState::Standstill));
 static_assert(same(bridge::AxisState::SynchronizedMotion, axis::AxisState::SynchronizedMotion));
 static_assert(same(bridge::AxisState::ErrorStop, axis::AxisState::ErrorStop));
+static_assert(same(bridge::GroupState::Disabled, axis::GroupState::Disabled));
+static_assert(same(bridge::GroupState::Moving, axis::GroupState::Moving));
+static_assert(same(bridge::GroupState::ErrorStop, axis::GroupState::ErrorStop));
 
 }  // namespace
 
@@ -58,6 +61,13 @@ bridge::AxisSample sampleOf(core::CycleNumber cycle, const axis::AxisStatus& sta
             .mode = status.mode,
             .powered = status.powered,
             .homed = status.homed};
+}
+
+bridge::GroupSample sampleOf(core::CycleNumber cycle, const axis::GroupStatus& status) noexcept {
+    return {.cycle = cycle,
+            .pathVelocity = status.velocity.count(),
+            .error = static_cast<std::uint16_t>(status.error),
+            .state = as<bridge::GroupState>(status.state)};
 }
 
 }  // namespace takt::daemon

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <takt/axis/axis_view.hpp>
+#include <takt/axis/group_view.hpp>
 #include <takt/bridge/protocol.hpp>
 #include <takt/core/time.hpp>
 
@@ -12,5 +13,7 @@ namespace takt::daemon {
 [[nodiscard]] bridge::MachineSample sampleOf(const RunEntry& run) noexcept;
 [[nodiscard]] bridge::AxisSample sampleOf(core::CycleNumber cycle,
                                           const axis::AxisStatus& status) noexcept;
+[[nodiscard]] bridge::GroupSample sampleOf(core::CycleNumber cycle,
+                                           const axis::GroupStatus& status) noexcept;
 
 }  // namespace takt::daemon

@@ -146,7 +146,7 @@ Verdict CommandDesk::stopProgram(const ControlCommand& command) noexcept {
     if (command.target >= parts_.programs.size()) return {.refusal = Refusal::UnknownTarget};
     ProgramHost& program = parts_.programs[command.target];
     if (program.ended()) return {.refusal = Refusal::ProgramEnded};
-    program.hold(parts_.axes);
+    program.hold({parts_.axes, parts_.groups});
     return {};
 }
 
@@ -157,7 +157,7 @@ Verdict CommandDesk::resetProgram(const ControlCommand& command, bool operating)
     if (fresh == nullptr) return {.refusal = Refusal::Busy};
     std::uint16_t detail = 0;
     const Refusal refusal = whyNoReset(program, operating, detail);
-    if (refusal == Refusal::None) program.exchange(*fresh, parts_.axes);
+    if (refusal == Refusal::None) program.exchange(*fresh, {parts_.axes, parts_.groups});
     parts_.stock.retire(fresh);
     return {.refusal = refusal, .detail = detail};
 }

@@ -39,6 +39,7 @@ public:
 
     struct Parts {
         Axes& axes;
+        Groups& groups;
         std::span<ProgramHost> programs;
         MachineStop& machineStop;
         BusDesk& bus;

@@ -58,6 +58,29 @@ AxisReport axisOf(const Json& json, std::string& error) {
     return axis;
 }
 
+Json jsonOf(const GroupReport& group) {
+    return {{"name", group.name},
+            {"unit", group.unit},
+            {"state", group.state},
+            {"path", numberOf(group.path)},
+            {"velocity", numberOf(group.velocity)},
+            {"queued", group.queued},
+            {"error", group.error}};
+}
+
+GroupReport groupOf(const Json& json, std::string& error) {
+    GroupReport group;
+    Members members{json, error};
+    members.take("name", group.name);
+    members.take("unit", group.unit);
+    members.take("state", group.state);
+    members.take("path", group.path);
+    members.take("velocity", group.velocity);
+    members.take("queued", group.queued);
+    members.take("error", group.error);
+    return group;
+}
+
 Json jsonOf(const ProgramReport& program) {
     Json watches = Json::object();
     for (const WatchReport& watch : program.watches) watches[watch.name] = numberOf(watch.value);
@@ -95,8 +118,10 @@ Json jsonOf(const StatusReport& status) {
               {"bridgeStarts", status.bridgeStarts},
               {"bridgePublished", status.bridgePublished},
               {"axes", Json::array()},
+              {"groups", Json::array()},
               {"programs", Json::array()}};
     for (const AxisReport& axis : status.axes) json["axes"].push_back(jsonOf(axis));
+    for (const GroupReport& group : status.groups) json["groups"].push_back(jsonOf(group));
     for (const ProgramReport& program : status.programs)
         json["programs"].push_back(jsonOf(program));
     return json;
@@ -122,6 +147,9 @@ StatusReport statusOf(const Json& json, std::string& error) {
     members.take("bridgePublished", status.bridgePublished);
     if (const Json* axes = members.array("axes")) {
         for (const Json& axis : *axes) status.axes.push_back(axisOf(axis, error));
+    }
+    if (const Json* groups = members.array("groups")) {
+        for (const Json& group : *groups) status.groups.push_back(groupOf(group, error));
     }
     if (const Json* programs = members.array("programs")) {
         for (const Json& program : *programs) status.programs.push_back(programOf(program, error));

@@ -27,6 +27,19 @@ AxisReport reportOf(const AxisEntry& entry, const ControlNames& names, std::size
     return report;
 }
 
+GroupReport reportOf(const GroupEntry& entry, const ControlNames& names, std::size_t index) {
+    const axis::GroupStatus& status = entry.status;
+    GroupReport report;
+    report.name = names.groups[index];
+    report.unit = names.groupUnits[index];
+    report.state = axis::name(status.state);
+    report.path = status.path.count();
+    report.velocity = status.velocity.count();
+    report.queued = status.queued;
+    if (entry.error.id != axis::ErrorId::None) report.error = axis::explain(entry.error);
+    return report;
+}
+
 ProgramReport reportOf(const ProgramEntry& entry, const std::string& programName,
                        const std::vector<std::string>& watches) {
     ProgramReport report;
@@ -66,6 +79,9 @@ StatusReport ControlServer::report() const {
     }
     for (std::size_t i = 0; i < board.axes.size(); ++i) {
         report.axes.push_back(reportOf(board.axes[i].read(), names, i));
+    }
+    for (std::size_t i = 0; i < board.groups.size(); ++i) {
+        report.groups.push_back(reportOf(board.groups[i].read(), names, i));
     }
     for (std::size_t i = 0; i < board.programs.size(); ++i) {
         const ProgramEntry entry = board.programs[i].read();

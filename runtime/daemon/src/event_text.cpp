@@ -21,6 +21,11 @@ template <typename Enum>
 double number(Enum value) noexcept {
     return static_cast<double>(static_cast<std::uint16_t>(value));
 }
+record::Event failure(core::CycleNumber cycle, EventId id, std::uint16_t source,
+                      const axis::ErrorRecord& error) noexcept {
+    const double packed = number(error.id) * DriveErrorSpan + error.driveError;
+    return event(cycle, id, source, {packed, error.numbers[0], error.numbers[1], error.numbers[2]});
+}
 template <typename Enum>
 Enum as(double value) noexcept {
     return static_cast<Enum>(static_cast<std::uint16_t>(value));
@@ -83,9 +88,15 @@ record::Event axisChanged(core::CycleNumber cycle, std::uint16_t axis, axis::Axi
 }
 record::Event axisFailed(core::CycleNumber cycle, std::uint16_t axis,
                          const axis::ErrorRecord& error) noexcept {
-    const double packed = number(error.id) * DriveErrorSpan + error.driveError;
-    return event(cycle, EventId::AxisFailed, axis,
-                 {packed, error.numbers[0], error.numbers[1], error.numbers[2]});
+    return failure(cycle, EventId::AxisFailed, axis, error);
+}
+record::Event groupChanged(core::CycleNumber cycle, std::uint16_t group, axis::GroupState from,
+                           axis::GroupState to) noexcept {
+    return event(cycle, EventId::GroupChanged, group, {number(from), number(to)});
+}
+record::Event groupFailed(core::CycleNumber cycle, std::uint16_t group,
+                          const axis::ErrorRecord& error) noexcept {
+    return failure(cycle, EventId::GroupFailed, group, error);
 }
 record::Event programChanged(core::CycleNumber cycle, std::uint16_t program, ProgramPhase phase,
                              bool held) noexcept {
@@ -202,6 +213,13 @@ std::string text(const record::Event& event, const ControlNames& names) {
                                axis::name(as<axis::AxisState>(event.numbers[1])));
         case EventId::AxisFailed:
             return fmt::format("axis {}: {}", axis(), axis::explain(errorOf(event)));
+        case EventId::GroupChanged:
+            return fmt::format("group {} {} -> {}", nameIn(names.groups, event.source),
+                               axis::name(as<axis::GroupState>(event.numbers[0])),
+                               axis::name(as<axis::GroupState>(event.numbers[1])));
+        case EventId::GroupFailed:
+            return fmt::format("group {}: {}", nameIn(names.groups, event.source),
+                               axis::explain(errorOf(event)));
         case EventId::ProgramChanged:
             return fmt::format("program '{}' {}", nameIn(names.programs, event.source),
                                name(as<ProgramPhase>(event.numbers[0]), event.numbers[1] != 0.0));

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <takt/axis/axis_view.hpp>
+#include <takt/axis/group_view.hpp>
 #include <takt/fieldbus/ethercat/network_state.hpp>
 #include <takt/record/event_log.hpp>
 #include <vector>
@@ -25,6 +26,8 @@ enum class EventId : std::uint16_t {
     CommandRefused,
     StationFailed,
     OperatorLost,
+    GroupChanged,
+    GroupFailed,
 };
 
 // rt.
@@ -34,6 +37,10 @@ enum class EventId : std::uint16_t {
                                         axis::AxisState from, axis::AxisState to) noexcept;
 [[nodiscard]] record::Event axisFailed(core::CycleNumber cycle, std::uint16_t axis,
                                        const axis::ErrorRecord& error) noexcept;
+[[nodiscard]] record::Event groupChanged(core::CycleNumber cycle, std::uint16_t group,
+                                         axis::GroupState from, axis::GroupState to) noexcept;
+[[nodiscard]] record::Event groupFailed(core::CycleNumber cycle, std::uint16_t group,
+                                        const axis::ErrorRecord& error) noexcept;
 [[nodiscard]] record::Event programChanged(core::CycleNumber cycle, std::uint16_t program,
                                            ProgramPhase phase, bool held) noexcept;
 [[nodiscard]] record::Event machineStopped(core::CycleNumber cycle,
@@ -51,6 +58,8 @@ enum class EventId : std::uint16_t {
 struct ControlNames {
     std::vector<std::string> axes;
     std::vector<std::string> units;  ///< of the axes
+    std::vector<std::string> groups;
+    std::vector<std::string> groupUnits;  ///< of path length
     std::vector<std::string> programs;
     std::vector<std::string> stopInputs;
     std::vector<std::string> devices;

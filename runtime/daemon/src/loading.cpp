@@ -75,11 +75,12 @@ std::optional<LoadedMachine> loadMachine(const RunOptions& options,
     std::vector<std::string> problems;
     checkLoad(machine.config, problems);
     makeAxes(machine.config, machine.axes);
+    makeGroups(machine.config, machine.axes, machine.groups);
     LoadedPrograms programs = loadPrograms(machine.config, std::move(linked), problems);
     machine.programs = std::move(programs.hosts);
     machine.factories = std::move(programs.factories);
     for (ProgramHost& program : machine.programs) {
-        for (const std::string& text : program.start(machine.axes, machine.config.network.cycle)) {
+        for (const std::string& text : program.start(machine.config)) {
             problems.push_back(fmt::format("{}: error: {}", program.origin(), text));
         }
     }

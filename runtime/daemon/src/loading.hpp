@@ -16,6 +16,7 @@ namespace takt::daemon {
 struct LoadedMachine {
     config::MachineConfig config;
     Axes axes;
+    Groups groups;
     std::vector<ProgramHost> programs;
     std::vector<ProgramFactory> factories;  ///< of the programs
     std::vector<TakenCommand> commands;     ///< to be replayed

@@ -52,6 +52,10 @@ ControlNames controlNames(const config::MachineConfig& machine,
         names.axes.push_back(axis.name);
         names.units.push_back(axis.unit);
     }
+    for (const axis::GroupParams& group : machine.groups) {
+        names.groups.push_back(group.name);
+        names.groupUnits.push_back(group.unit);
+    }
     for (const ProgramHost& program : programs) names.programs.push_back(program.name());
     for (const auto& input : machine.machineStop.inputs) names.stopInputs.push_back(input.name);
     for (const auto& slave : machine.network.slaves) names.devices.push_back(slave.name);
@@ -61,16 +65,17 @@ ControlNames controlNames(const config::MachineConfig& machine,
 MachineControl::MachineControl(const Parts& parts, std::vector<TakenCommand> replay, bool record)
     : parts_{parts},
       names_{controlNames(parts.machine, parts.programs)},
-      board_{parts.axes.size(), parts.programs.size()},
+      board_{parts.axes.size(), parts.groups.size(), parts.programs.size()},
       diagnosis_{parts.machine.network.slaves.size()},
       stop_{parts.machine.machineStop, parts.machine.network.cycle,
             bindInputs(parts.machine, parts.master), parts.axes.size()},
       bus_{{parts.machine.network, parts.machine.axes, parts.master, parts.axes, parts.programs}},
-      desk_{{parts.axes, parts.programs, stop_, bus_, parts.stock, rings_},
+      desk_{{parts.axes, parts.groups, parts.programs, stop_, bus_, parts.stock, rings_},
             parts.machine.network.cycle,
             std::move(replay),
             record} {
     seen_.axes.resize(parts.axes.size());
+    seen_.groups.resize(parts.groups.size());
     seen_.programs.resize(parts.programs.size());
 }
 
@@ -133,6 +138,10 @@ void MachineControl::publishStatus(core::CycleNumber cycle, const CycleOrders& o
                               static_cast<std::uint16_t>(desk_.holderOf(i)),
                               axis.view().needsEnableEdge});
     }
+    for (std::size_t i = 0; i < parts_.groups.size(); ++i) {
+        const axis::Group& group = parts_.groups[i];
+        board_.groups[i].write({group.status(), group.view().error});
+    }
     for (std::size_t i = 0; i < parts_.programs.size(); ++i) {
         const ProgramHost& program = parts_.programs[i];
         ProgramEntry entry{
@@ -149,6 +158,9 @@ void MachineControl::publishToBridge(const RunEntry& run) noexcept {
     if (parts_.bridge == nullptr || !parts_.bridge->due(run.cycle)) return;
     for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
         parts_.bridge->axis(i, sampleOf(run.cycle, parts_.axes[i].status()));
+    }
+    for (std::size_t i = 0; i < parts_.groups.size(); ++i) {
+        parts_.bridge->group(i, sampleOf(run.cycle, parts_.groups[i].status()));
     }
     parts_.bridge->machine(sampleOf(run));
 }
@@ -173,6 +185,20 @@ void MachineControl::noteChanges(core::CycleNumber cycle) noexcept {
     if (stop.cause == StopCause::None && seen_.stop.cause != StopCause::None)
         events.add(machineStopReset(cycle));
     seen_.stop = stop;
+    noteMovers(cycle);
+}
+
+void MachineControl::noteMovers(core::CycleNumber cycle) noexcept {
+    record::EventLog& events = rings_.events;
+    for (std::size_t i = 0; i < parts_.groups.size(); ++i) {
+        const axis::Group& group = parts_.groups[i];
+        const auto number = static_cast<std::uint16_t>(i);
+        if (group.state() == seen_.groups[i]) continue;
+        events.add(groupChanged(cycle, number, seen_.groups[i], group.state()));
+        if (group.state() == axis::GroupState::ErrorStop)
+            events.add(groupFailed(cycle, number, group.view().error));
+        seen_.groups[i] = group.state();
+    }
     for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
         const axis::Axis& axis = parts_.axes[i];
         const auto number = static_cast<std::uint16_t>(i);

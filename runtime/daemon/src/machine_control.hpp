@@ -34,6 +34,7 @@ public:
         const config::MachineConfig& machine;
         fieldbus::ethercat::Master& master;
         Axes& axes;
+        Groups& groups;
         std::span<ProgramHost> programs;
         ProgramStock& stock;
         bridge::StatusWriter* bridge;  ///< null: none
@@ -59,6 +60,7 @@ private:
         fieldbus::ethercat::NetworkState network{};
         StopRecord stop{};
         std::vector<axis::AxisState> axes;
+        std::vector<axis::GroupState> groups;
         struct ProgramSeen {
             ProgramPhase phase{};
             bool held{false};
@@ -71,6 +73,7 @@ private:
     void publishStatus(core::CycleNumber cycle, const CycleOrders& orders) noexcept;
     void publishToBridge(const RunEntry& run) noexcept;
     void noteChanges(core::CycleNumber cycle) noexcept;
+    void noteMovers(core::CycleNumber cycle) noexcept;
 
     Parts parts_;
     ControlNames names_;

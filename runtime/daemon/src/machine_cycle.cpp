@@ -11,28 +11,33 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
     const core::HostTime replied = parts_.clock.now();
     followReferenceClock(beat);
     if (beat.skipped > 0) passOver(beat);
-    for (axis::Axis& axis : parts_.axes) axis.readInputs(beat.number);
+    const Movers& movers = parts_.movers;
+    for (axis::Axis& axis : movers.axes) axis.readInputs(beat.number);
+    for (axis::Group& group : movers.groups) group.readMembers(beat.number);
     parts_.control.beforePrograms(beat.number, orders);
     if (orders.runPrograms) {
-        for (ProgramHost& program : parts_.programs) program.cycle(beat.number, parts_.axes);
+        for (ProgramHost& program : parts_.programs) program.cycle(beat.number, movers);
     }
     parts_.control.afterPrograms(beat.number, orders);
     const core::HostTime computed = parts_.clock.now();
-    for (axis::Axis& axis : parts_.axes) axis.step();
-    for (axis::Axis& axis : parts_.axes) axis.writeOutputs();
+    for (axis::Group& group : movers.groups) group.step();
+    for (axis::Axis& axis : movers.axes) axis.step();
+    for (axis::Axis& axis : movers.axes) axis.writeOutputs();
     parts_.master.prepare();
-    parts_.recorders.row(beat.number, parts_.axes);
+    parts_.recorders.row(beat.number, movers);
     parts_.control.publish(beat.number, orders);
     keepBooks(beat, replied, computed);
 }
 
 /// Lost set-points are those of the cycles that were missed, so they come before this one's inputs.
 void MachineCycle::passOver(const scheduler::Beat& beat) noexcept {
+    const Movers& movers = parts_.movers;
     for (std::uint32_t i = beat.madeUpFor; i > 0; --i) {
-        for (axis::Axis& axis : parts_.axes) axis.missCycle();
-        parts_.recorders.row(beat.number - i, parts_.axes);
+        for (axis::Group& group : movers.groups) group.missCycle();
+        for (axis::Axis& axis : movers.axes) axis.missCycle();
+        parts_.recorders.row(beat.number - i, movers);
     }
-    for (axis::Axis& axis : parts_.axes) axis.standFor(beat.skipped - beat.madeUpFor);
+    for (axis::Axis& axis : movers.axes) axis.standFor(beat.skipped - beat.madeUpFor);
 }
 
 void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {

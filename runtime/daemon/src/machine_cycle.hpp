@@ -20,7 +20,7 @@ class MachineCycle {
 public:
     struct Parts {
         fieldbus::ethercat::Master& master;
-        Axes& axes;
+        Movers movers;
         std::span<ProgramHost> programs;
         scheduler::Grid& grid;
         scheduler::DcLock& dcLock;

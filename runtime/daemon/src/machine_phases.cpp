@@ -14,6 +14,7 @@ void MachineRun::oneCycle() noexcept {
     bus_.beginCycle(beat.number);
     orders_.allTold = told_.load(std::memory_order_acquire) == noted_;
     cycle_.run(beat, orders_);
+    doJobs();
     now_ = beat.number + 1;
     const core::CycleGuard guard;
     superviseOverruns(beat);
@@ -32,6 +33,25 @@ DiagnosisEntry MachineRun::diagnosis() const noexcept {
             .network = bus_.master().state(),
             .problem = bus_.master().problemRecord(),
             .counters = bus_.master().counters()};
+}
+
+/// Jobs: in virtual time between the cycles, on a machine on a thread of their own.
+void MachineRun::doJobs() noexcept {
+    if (!planning_) {
+        planPaths();
+        routes_.work();
+        return;
+    }
+    bool paths = false;
+    for (axis::Group& group : groups_) paths = group.planner().takeCall() || paths;
+    if (paths) planning_->ring();
+    if (routes_.takeCalls()) routing_->ring();
+}
+
+void MachineRun::planPaths() {
+    for (axis::Group& group : groups_) {
+        if (group.planner().wanted()) group.planner().work();
+    }
 }
 
 void MachineRun::supervise() noexcept {

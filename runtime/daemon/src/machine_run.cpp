@@ -80,6 +80,7 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       recorders_{recorders},
       console_{console},
       axes_{machine.axes},
+      groups_{machine.groups},
       programs_{machine.programs},
       endNoted_(programs_.size(), false),
       overdueNoted_(axes_.size(), false),
@@ -87,18 +88,26 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       dcLock_{lockFor(options, machine_), machine_.network.cycle},
       grid_{core::HostTime{}, machine_.network.cycle},
       overruns_{machine_.scheduler.overruns},
-      stock_{programs_, machine.factories, axes_, machine_.network.cycle},
+      stock_{programs_, machine.factories, machine_},
       bridge_{bridgeFor(options, machine_)},
-      control_{{machine_, bus_.master(), axes_, programs_, stock_,
+      control_{{machine_, bus_.master(), axes_, groups_, programs_, stock_,
                 bridge_ ? &bridge_->status() : nullptr},
                machine.commands,
                !options.recordCommands.empty()},
       server_{{machine_, stock_, control_, bridge_.get()}, options.socket, options.recordCommands},
-      cycle_{{bus_.master(), axes_, programs_, grid_, dcLock_, recorders_, control_, bus_.clock(),
+      cycle_{{bus_.master(),
+              {axes_, groups_},
+              programs_,
+              grid_,
+              dcLock_,
+              recorders_,
+              control_,
+              bus_.clock(),
               machine_.network.cycle}},
       pace_{!options.fast && options.interface.empty()},
       notices_{NoticeRoom},
-      reporter_{machine_, programs_, bus_.master(), control_.names(), console} {
+      reporter_{machine_, programs_, bus_.master(), control_.names(), console},
+      routes_{machine_, axes_, programs_} {
     attachAxes(machine_, bus_.master(), axes_);
     for (const TakenCommand& taken : machine.commands) {
         if (taken.command.order != Order::ProgramReset) continue;
@@ -195,6 +204,15 @@ void MachineRun::runOnThreads() {
             ThreadPlace{"takt-" + program.name(), std::max(params.priority - 1, 0), params.cpu},
             CallBudget{core::Duration{budget}, lenient}, bus_.clock(), notes));
     }
+    if (!groups_.empty()) {
+        // Below the programs, so that a long plan keeps nobody from his cycle.
+        planning_ = std::make_unique<PlanningThread>(
+            ThreadPlace{"takt-plan", std::max(params.priority - 2, 0), -1}, [this] { planPaths(); },
+            notes);
+        // No motion waits for a way: it may take as long as other processes let it.
+        routing_ = std::make_unique<PlanningThread>(
+            ThreadPlace{"takt-route", 0, -1}, [this] { routes_.work(); }, notes);
+    }
     std::atomic<bool> go{false};
     RealtimeThread thread{{"takt-cycle", params.priority, params.cpu},
                           [this, &go] {
@@ -214,6 +232,8 @@ void MachineRun::runOnThreads() {
         std::this_thread::sleep_for(HouseInterval);
     }
     thread.join();
+    planning_.reset();
+    routing_.reset();
     keepHouse(true);
 }
 
@@ -246,7 +266,8 @@ void MachineRun::conclude() {
             fmt::format("{}: not complete; is the disk full?", options_.recordCommands.string()));
         if (code_ == ExitCode::Good) code_ = ExitCode::CouldNotRun;
     }
-    if (reporter_.tellAxisErrors(axes_) && code_ == ExitCode::Good) code_ = ExitCode::MachineFault;
+    if (reporter_.tellErrors({axes_, groups_}) && code_ == ExitCode::Good)
+        code_ = ExitCode::MachineFault;
     const double simulated = static_cast<double>(now_) * seconds(machine_.network.cycle);
     const double wall = seconds(pace_.elapsed());
     const NetworkReport network = networkReport();
@@ -254,6 +275,11 @@ void MachineRun::conclude() {
                               wall > 0 ? simulated / wall : 0.0, frameSummary(network)));
     if (!onMachine()) return;
     for (const std::string& line : timeTable(network)) console_.line(line);
+    for (const axis::Group& group : groups_) {
+        if (group.status().latePlans == 0) continue;
+        console_.line(fmt::format("warning: group {}: {} plans came late; more latency helps",
+                                  group.name(), group.status().latePlans));
+    }
     const bool anyTrouble =
         std::any_of(network.devices.begin(), network.devices.end(), [](const DeviceReport& device) {
             return !device.workingCounter.empty() || device.emergencies > 0;

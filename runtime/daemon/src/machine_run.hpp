@@ -17,8 +17,10 @@
 #include "machine_cycle.hpp"
 #include "network_summary.hpp"
 #include "pace.hpp"
+#include "planning_thread.hpp"
 #include "program_watchdog.hpp"
 #include "realtime_thread.hpp"
+#include "route_office.hpp"
 #include "run_notice.hpp"
 #include "run_reporter.hpp"
 #include "service_notifier.hpp"
@@ -57,12 +59,14 @@ private:
     void keepHouse(bool cycleRests);
     void conclude();
     [[nodiscard]] NetworkReport networkReport();
+    void planPaths();
     [[noreturn]] void leaveHangingProgram(std::size_t program, core::CycleNumber cycle);
 
     // rt, after each cycle.
     void oneCycle() noexcept;
     void supervise() noexcept;
     [[nodiscard]] DiagnosisEntry diagnosis() const noexcept;
+    void doJobs() noexcept;
     void superviseOverruns(const scheduler::Beat& beat) noexcept;
     void superviseGoingOp() noexcept;
     void superviseOperating() noexcept;
@@ -85,6 +89,7 @@ private:
     Console& console_;
     StopRequest stop_;
     Axes& axes_;
+    Groups& groups_;
     std::vector<ProgramHost>& programs_;
     std::vector<bool> endNoted_;      ///< programs whose end has been noted
     std::vector<bool> overdueNoted_;  ///< axes that outlasted the present machine stop
@@ -112,6 +117,9 @@ private:
     bool quickStopped_{false};
     bool stopTimedOut_{false};
     bool stopNoted_{false};  ///< the present machine stop has been noted
+    RouteOffice routes_;
+    std::unique_ptr<PlanningThread> planning_;  ///< of paths; on a machine with groups
+    std::unique_ptr<PlanningThread> routing_;   ///< of ways around keep-outs, likewise
     std::atomic<bool> over_{false};
 };
 

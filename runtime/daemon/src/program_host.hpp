@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <takt/config/machine_config.hpp>
 #include <takt/program/machine.hpp>
 #include <takt/program/program.hpp>
 #include <takt/program/program_library.hpp>
@@ -24,31 +25,34 @@ enum class ProgramPhase : std::uint8_t {
     Abandoned,  ///< a call did not come back within its budget
 };
 
-/// Runs one program: its exchange area with the axes, its calls, and what becomes of it.
+/// Runs one program: its exchange area with axes and groups, its calls, and what becomes of it.
 class ProgramHost {
 public:
     /// \param number tells programs apart on their axes, from 1
     ProgramHost(program::ProgramParams params, program::ProgramPtr program, std::size_t axisCount,
+                std::size_t groupCount, std::uint16_t number);
+    /// Another instance of a program: it asks for ways at the same desks as `first`.
+    ProgramHost(const ProgramHost& first, program::ProgramPtr program, std::size_t axisCount,
                 std::uint16_t number);
     ProgramHost(ProgramHost&&) = default;
     ~ProgramHost();
 
     /// Calls the program's `start`. \return what is wrong, one sentence each
-    std::vector<std::string> start(const Axes& axes, core::Duration cycle);
+    std::vector<std::string> start(const config::MachineConfig& machine);
     /// Before the first cycle: who makes the calls.
     void useCaller(std::unique_ptr<ProgramCaller> caller) { caller_ = std::move(caller); }
     /// rt. One call of the program; its commands reach the axes when it came back. \pre useCaller()
-    void cycle(core::CycleNumber cycle, Axes& axes) noexcept;
+    void cycle(core::CycleNumber cycle, const Movers& movers) noexcept;
     /// rt. The operator stops the program: it is not called any more and its axes stop on their
     /// ramp.
-    void hold(Axes& axes) noexcept;
+    void hold(const Movers& movers) noexcept;
     /// rt. It is called again from where it was stopped; its blocks show CommandAborted.
     void goOn() noexcept { held_ = false; }
     [[nodiscard]] bool held() const noexcept { return held_; }
     /// rt. Takes over a fresh instance of the same program, which has been started and has no
     /// caller, and leaves the old one in it. The program is then stopped before its first call;
     /// what the old one held its axes by is released. \pre atRest()
-    void exchange(ProgramHost& fresh, Axes& axes) noexcept;
+    void exchange(ProgramHost& fresh, const Movers& movers) noexcept;
     /// How many instances there were before this one.
     [[nodiscard]] std::uint32_t instance() const noexcept { return instance_; }
     void setInstance(std::uint32_t instance) noexcept { instance_ = instance; }
@@ -56,10 +60,12 @@ public:
     [[nodiscard]] bool atRest() const noexcept {
         return phase_ != ProgramPhase::Abandoned && !(caller_ && caller_->underWay());
     }
-    /// rt. The program has asked for this axis; while it runs nobody else moves it.
-    [[nodiscard]] bool uses(std::size_t axis) const noexcept {
-        return work_->machine().axes()[axis].asked;
-    }
+    /// rt. The program has asked for this axis or a group of it; while it runs nobody else moves
+    /// it.
+    [[nodiscard]] bool uses(std::size_t axis) const noexcept { return work_->machine().uses(axis); }
+    /// Where the program asks for ways of each group around its keep-outs. All its instances share
+    /// them.
+    [[nodiscard]] const RouteDesks& routes() const noexcept { return routes_; }
     /// rt. The machine as the program sees it: to tell it of a machine stop and to hear it ask for
     /// one. \pre atRest()
     [[nodiscard]] program::Machine& machine() noexcept { return work_->machine(); }
@@ -85,15 +91,19 @@ public:
 
 private:
     [[nodiscard]] bool due(core::CycleNumber cycle) noexcept;
-    void open(Axes& axes) noexcept;
-    void settle(Axes& axes) noexcept;
-    void stopAxes(Axes& axes) noexcept;
+    void open(const Movers& movers) noexcept;
+    void settle(const Movers& movers) noexcept;
+    void stopMovers(const Movers& movers) noexcept;
     void end(ProgramPhase phase, core::CycleNumber cycle) noexcept;
+    [[nodiscard]] std::string unknown(std::string_view kind, std::string_view asked,
+                                      std::string_view known) const;
 
     program::ProgramParams params_;
+    RouteDesks routes_;  ///< for each group
     std::unique_ptr<ProgramWork> work_;
     std::unique_ptr<ProgramCaller> caller_;
-    std::vector<bool> commanded_;  ///< for each axis: the program has commanded it
+    std::vector<bool> commanded_;       ///< for each axis: the program has commanded it
+    std::vector<bool> groupCommanded_;  ///< likewise
     program::Inspector inspector_;
     ProgramPhase phase_{ProgramPhase::Waiting};
     bool held_{false};

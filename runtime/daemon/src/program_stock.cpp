@@ -21,12 +21,11 @@ std::vector<std::string> namesOf(const ProgramHost& host) {
 }  // namespace
 
 ProgramStock::ProgramStock(std::span<const ProgramHost> programs,
-                           const std::vector<ProgramFactory>& factories, const Axes& axes,
-                           core::Duration cycle)
+                           const std::vector<ProgramFactory>& factories,
+                           const config::MachineConfig& machine)
     : programs_{programs},
       factories_{factories},
-      axes_{axes},
-      cycle_{cycle},
+      machine_{machine},
       retired_{Room * (programs.size() + 1)} {
     for (const ProgramHost& host : programs_) {
         fresh_.push_back(std::make_unique<Ring>(Room));
@@ -57,10 +56,10 @@ std::vector<std::string> ProgramStock::prepare(std::size_t program) {
         // Another number than all before it: an outcome of an old instance's command is not its.
         const std::size_t number = 1 + (program + programs_.size() * instance) % PortNumbers;
         auto host =
-            std::make_unique<ProgramHost>(programs_[program].params(), std::move(loaded.program),
-                                          axes_.size(), static_cast<std::uint16_t>(number));
+            std::make_unique<ProgramHost>(programs_[program], std::move(loaded.program),
+                                          machine_.axes.size(), static_cast<std::uint16_t>(number));
         host->setInstance(instance);
-        if (auto problems = host->start(axes_, cycle_); !problems.empty()) return problems;
+        if (auto problems = host->start(machine_); !problems.empty()) return problems;
         {
             const std::lock_guard lock{mutex_};
             watches_[program].push_back(namesOf(*host));

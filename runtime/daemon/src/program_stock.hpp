@@ -17,7 +17,7 @@ namespace takt::daemon {
 ///
 ///     auto problems = stock.prepare(program);      // one thread outside; runs the program's start
 ///     ProgramHost* fresh = stock.take(program);    // the cycle
-///     host.exchange(*fresh, axes); stock.retire(fresh);
+///     host.exchange(*fresh, movers); stock.retire(fresh);
 ///     stock.clear();                               // one thread outside; runs the old one's stop
 class ProgramStock {
 public:
@@ -25,8 +25,8 @@ public:
 
     /// All must outlive the stock.
     ProgramStock(std::span<const ProgramHost> programs,
-                 const std::vector<ProgramFactory>& factories, const Axes& axes,
-                 core::Duration cycle);
+                 const std::vector<ProgramFactory>& factories,
+                 const config::MachineConfig& machine);
     ~ProgramStock();
     ProgramStock(const ProgramStock&) = delete;
     ProgramStock& operator=(const ProgramStock&) = delete;
@@ -49,8 +49,7 @@ private:
 
     std::span<const ProgramHost> programs_;
     const std::vector<ProgramFactory>& factories_;
-    const Axes& axes_;
-    core::Duration cycle_;
+    const config::MachineConfig& machine_;
     std::vector<std::unique_ptr<Ring>> fresh_;  ///< for each program
     Ring retired_;
     mutable std::mutex mutex_;  ///< of the names; never taken in the cycle

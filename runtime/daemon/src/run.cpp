@@ -24,6 +24,8 @@ int run(const RunOptions& options, std::vector<LinkedProgram> linked) {
                 fmt::format("capture: {} frames, each sent and returned", capture->packets()));
         }
         if (!options.plot.empty()) console.line(fmt::format("plot: {}", options.plot.string()));
+        if (!options.topView.empty())
+            console.line(fmt::format("top view: {}", options.topView.string()));
         return code == 0 && !problems.empty() ? static_cast<int>(ExitCode::CouldNotRun) : code;
     } catch (const std::runtime_error& error) {
         console.error(error.what());

@@ -112,13 +112,19 @@ void RunReporter::progress(const StatusBoard& board) {
     console_.progress(text);
 }
 
-bool RunReporter::tellAxisErrors(const Axes& axes) {
+bool RunReporter::tellErrors(const Movers& movers) {
     bool any = false;
-    for (const axis::Axis& axis : axes) {
+    for (const axis::Axis& axis : movers.axes) {
         if (axis.status().state != axis::AxisState::ErrorStop) continue;
         any = true;
         console_.error(fmt::format("axis {} ended in ErrorStop: {}", axis.name(),
                                    axis::explain(axis.error())));
+    }
+    for (const axis::Group& group : movers.groups) {
+        if (group.state() != axis::GroupState::ErrorStop) continue;
+        any = true;
+        console_.error(fmt::format("group {} ended in GroupErrorStop: {}", group.name(),
+                                   axis::explain(group.view().error)));
     }
     return any;
 }

@@ -32,8 +32,9 @@ public:
     void tell(const RunNotice& notice);
     /// One line that is written over, about once in a second of cycles.
     void progress(const StatusBoard& board);
-    /// The reason of every axis that ended in ErrorStop. \return false when there was none
-    bool tellAxisErrors(const Axes& axes);
+    /// The reason of every axis and group that ended in ErrorStop. \return false when there was
+    /// none
+    bool tellErrors(const Movers& movers);
 
 private:
     void tellProgram(const ProgramHost& program);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <takt/axis/axis_view.hpp>
+#include <takt/axis/group_view.hpp>
 #include <takt/core/seq_lock.hpp>
 #include <takt/fieldbus/ethercat/cycle_counters.hpp>
 #include <takt/fieldbus/ethercat/network_state.hpp>
@@ -33,6 +34,11 @@ struct AxisEntry {
     bool needsEnableEdge{false};
 };
 
+struct GroupEntry {
+    axis::GroupStatus status{};
+    axis::ErrorRecord error{};
+};
+
 struct ProgramEntry {
     static constexpr std::size_t MostWatches = 32;
 
@@ -46,11 +52,12 @@ struct ProgramEntry {
 /// The status of the machine: written by the cycle, read by anybody. Each entry is whole; two
 /// entries may be of neighbouring cycles.
 struct StatusBoard {
-    StatusBoard(std::size_t axisCount, std::size_t programCount)
-        : axes(axisCount), programs(programCount) {}
+    StatusBoard(std::size_t axisCount, std::size_t groupCount, std::size_t programCount)
+        : axes(axisCount), groups(groupCount), programs(programCount) {}
 
     core::SeqLock<RunEntry> run;
     std::deque<core::SeqLock<AxisEntry>> axes;
+    std::deque<core::SeqLock<GroupEntry>> groups;
     std::deque<core::SeqLock<ProgramEntry>> programs;
 };
 

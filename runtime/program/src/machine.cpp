@@ -4,8 +4,11 @@
 
 namespace takt::program {
 
-Machine::Machine(std::vector<NamedAxis> axes, core::Duration cycleTime)
-    : axes_{std::move(axes)}, cycleTime_{std::chrono::duration<double>{cycleTime}.count()} {}
+Machine::Machine(std::vector<NamedAxis> axes, std::vector<NamedGroup> groups,
+                 core::Duration cycleTime)
+    : axes_{std::move(axes)},
+      groups_{std::move(groups)},
+      cycleTime_{std::chrono::duration<double>{cycleTime}.count()} {}
 
 axis::AxisRef Machine::axis(std::string_view name) {
     for (NamedAxis& axis : axes_) {
@@ -15,6 +18,24 @@ axis::AxisRef Machine::axis(std::string_view name) {
     }
     unknown_.emplace_back(name);
     return {};
+}
+
+axis::GroupRef Machine::group(std::string_view name) {
+    for (NamedGroup& group : groups_) {
+        if (group.name != name) continue;
+        group.asked = true;
+        return group.ref;
+    }
+    unknownGroups_.emplace_back(name);
+    return {};
+}
+
+bool Machine::uses(std::size_t axis) const noexcept {
+    const auto has = [axis](const NamedGroup& group) {
+        return group.asked &&
+               std::find(group.axes.begin(), group.axes.end(), axis) != group.axes.end();
+    };
+    return axes_[axis].asked || std::any_of(groups_.begin(), groups_.end(), has);
 }
 
 void Machine::fail(std::string_view reason) noexcept {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <takt/core/cycle_guard.hpp>
+#include <takt/core/random.hpp>
 #include <takt/twin/twin.hpp>
 
 #include "local_clock.hpp"
@@ -9,28 +10,12 @@ namespace takt::twin {
 
 namespace {
 
-/// splitmix64: small, and the same everywhere.
-class Random {
-public:
-    explicit Random(std::uint64_t seed) noexcept : state_{seed} {}
-
-    std::uint64_t next() noexcept {
-        state_ += 0x9E3779B97F4A7C15U;
-        std::uint64_t z = state_;
-        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
-        z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
-        return z ^ (z >> 31);
-    }
-    /// 0 … largest
-    core::Duration upTo(core::Duration largest) noexcept {
-        if (largest <= core::Duration{0}) return core::Duration{0};
-        return core::Duration{
-            static_cast<std::int64_t>(next() % (static_cast<std::uint64_t>(largest.count()) + 1))};
-    }
-
-private:
-    std::uint64_t state_;
-};
+/// 0 … largest
+core::Duration upTo(core::Random& random, core::Duration largest) noexcept {
+    if (largest <= core::Duration{0}) return core::Duration{0};
+    return core::Duration{
+        static_cast<std::int64_t>(random.upTo(static_cast<std::uint64_t>(largest.count())))};
+}
 
 }  // namespace
 
@@ -71,7 +56,7 @@ public:
     void sleepUntil(core::HostTime wake) noexcept override {
         const core::CycleGuardPause notTheController;
         if (wake <= now()) return;
-        segment.run(trueAt(wake) + random_.upTo(wakeJitter_), false);
+        segment.run(trueAt(wake) + upTo(random_, wakeJitter_), false);
     }
 
     Segment segment;
@@ -86,7 +71,7 @@ private:
 
     LocalClock hostClock_;
     core::Duration wakeJitter_;
-    Random random_;
+    core::Random random_;
 };
 
 Twin::Twin(const TwinParams& params,

@@ -85,6 +85,28 @@ public:
     /// The motor is not energised.
     [[nodiscard]] bool isDisabled() const noexcept { return !drive_.energised(); }
 
+    // A group's hold on the axis (rt), between readInputs() and step().
+
+    /// An enabled group has the axis; only one at a time. \return false when another one has it
+    [[nodiscard]] bool claim() noexcept;
+    void unclaim() noexcept { claimed_ = false; }
+    [[nodiscard]] bool claimed() const noexcept { return claimed_; }
+    /// The group moves: SynchronizedMotion, and the axis goes where follow() says. Single-axis
+    /// motion is refused; MC_Stop, MC_Power and errors change the state, and the axis still
+    /// follows, so that it stops on the path. \pre Standstill
+    void joinGroup() noexcept;
+    /// The set state of this cycle; to be called in each while the axis is grouped.
+    void follow(const planner::State& state) noexcept { led_ = state; }
+    /// The group rests: back to Standstill, or the end of the stop that was asked for meanwhile.
+    void leaveGroup() noexcept;
+    /// The group failed: ErrorStop; the axis follows until the group rests.
+    void failWithGroup() noexcept;
+    /// Reset as by MC_Reset; see resetRunning().
+    void resetWithGroup() noexcept;
+    [[nodiscard]] bool resetRunning() const noexcept { return !resets_.empty(); }
+    /// Why the last reset failed; None when it did not.
+    [[nodiscard]] ErrorId resetError() const noexcept { return resetError_; }
+
     // What is to be seen (rt).
     [[nodiscard]] AxisState state() const noexcept { return view_.state; }
     [[nodiscard]] const AxisView& view() const noexcept { return view_; }
@@ -131,7 +153,7 @@ private:
     void brake(CommandKind kind) noexcept;
     void endAll(CommandStatus outcome) noexcept;
     void enterStandstill() noexcept;
-    void report(CommandId id, CommandStatus status) noexcept;
+    void report(CommandId id, CommandStatus status) noexcept { events_.report(id, status); }
 
     // axis_supervision.cpp: errors, power, reset
     void supervise() noexcept;
@@ -171,11 +193,13 @@ private:
     core::Distance lag_{};
     core::Velocity actualVelocity_{};
 
+    planner::State led_{};  ///< set state of this cycle while a group drives the axis
+    bool claimed_{false};
+    ErrorId resetError_{ErrorId::None};
     core::FixedVector<CommandId, 8> resets_{};
     std::uint32_t resetCycles_{0};
 
-    std::array<CommandEvent, AxisPort::Remembered> events_{};
-    std::uint64_t eventCount_{0};
+    CommandEvents events_;
 
     double cycleSeconds_;
     std::uint32_t lostCycles_;

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <takt/axis/axis_view.hpp>
 #include <takt/axis/command.hpp>
+#include <takt/axis/command_book.hpp>
 #include <takt/core/fixed_vector.hpp>
 #include <takt/core/result.hpp>
 
@@ -22,10 +22,9 @@ namespace takt::axis {
 class AxisPort {
 public:
     static constexpr std::size_t MaxCommands = 16;  ///< per program cycle
-    static constexpr std::size_t Remembered = 64;   ///< commands whose outcome can be asked for
 
     /// `number` tells the ports of one axis apart; 1 to 65535.
-    explicit AxisPort(std::uint16_t number) noexcept;
+    explicit AxisPort(std::uint16_t number) noexcept : book_{number} {}
     AxisPort(const AxisPort&) = delete;
     AxisPort& operator=(const AxisPort&) = delete;
 
@@ -38,7 +37,7 @@ public:
     [[nodiscard]] core::Result<CommandId, ErrorId> submit(const Command& request) noexcept;
 
     /// rt. Where the command stands. Unknown when it was never accepted here or is forgotten.
-    [[nodiscard]] CommandStatus status(CommandId id) const noexcept;
+    [[nodiscard]] CommandStatus status(CommandId id) const noexcept { return book_.status(id); }
 
     /// All handles given out so far become invalid.
     void invalidate() noexcept { ++generation_; }
@@ -57,35 +56,13 @@ public:
     }
     /// rt. Ends it: the commands have been taken.
     void close() noexcept { commands_.clear(); }
-    /// rt. Stores what became of a command. Of other ports' commands nothing is kept.
-    void note(const CommandEvent& event) noexcept;
-    /// rt. Number of events of the axis this port has seen.
-    [[nodiscard]] std::uint64_t eventsSeen() const noexcept { return eventsSeen_; }
-    void setEventsSeen(std::uint64_t count) noexcept { eventsSeen_ = count; }
-    /// rt. Events were lost: pending commands that the axis no longer has become Unknown.
-    void forgetAllBut(std::span<const CommandId> alive) noexcept;
+    /// rt. What became of its commands.
+    [[nodiscard]] CommandBook& book() noexcept { return book_; }
 
 private:
-    struct Entry {
-        CommandId id{CommandId::None};
-        CommandStatus status{};
-        bool takesMotion{false};
-    };
-
-    [[nodiscard]] Entry& entryOf(CommandId id) noexcept {
-        return entries_[static_cast<std::size_t>(id) % Remembered];
-    }
-    [[nodiscard]] const Entry& entryOf(CommandId id) const noexcept {
-        return entries_[static_cast<std::size_t>(id) % Remembered];
-    }
-    [[nodiscard]] CommandId nextId() noexcept;
-    void abortPending() noexcept;
-
     AxisView view_{};
     core::FixedVector<Command, MaxCommands> commands_{};
-    std::array<Entry, Remembered> entries_{};
-    std::uint64_t lastId_{0};
-    std::uint64_t eventsSeen_{0};
+    CommandBook book_;
     std::uint32_t generation_{1};
 };
 

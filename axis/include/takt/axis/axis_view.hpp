@@ -51,6 +51,7 @@ struct AxisView {
     bool stopDone{false};     ///< Stopping at velocity zero
     bool stopReleased{true};  ///< Stopping ends with velocity zero
     bool movedBackward{false};    ///< direction of the last motion
+    bool grouped{false};          ///< its group moves it
     bool machineStop{false};      ///< the machine stop holds the axis: no motion, no power
     bool needsEnableEdge{false};  ///< since a machine stop: power only after Enable fell
     std::uint8_t queued{0};

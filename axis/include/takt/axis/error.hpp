@@ -24,6 +24,7 @@ enum class ErrorId : std::uint16_t {
     ParameterType = 0x0109,
     NullReference = 0x010A,
     NotFinite = 0x010B,
+    StartOutsideSWLimit = 0x010C,
     // State
     InvalidState = 0x0201,
     NotPowered = 0x0202,
@@ -35,12 +36,17 @@ enum class ErrorId : std::uint16_t {
     GroupNotEnabled = 0x0208,
     NotSynchronized = 0x0209,
     MachineStopped = 0x020A,
+    GroupIncomplete = 0x020B,
+    GroupLocked = 0x020C,
+    GroupInErrorStop = 0x020D,
+    AxisInOtherGroup = 0x020E,
     // Queue
     BufferFull = 0x0301,
     InstanceBusy = 0x0302,
     BlendingNotPossible = 0x0303,
     ContinuousUpdateNotPossible = 0x0304,
     OutcomeUnknown = 0x0305,
+    TransitionNotSupported = 0x0306,
     // Planning
     ProfileNotFeasible = 0x0401,
     SyncNotReachable = 0x0402,
@@ -49,6 +55,13 @@ enum class ErrorId : std::uint16_t {
     Singularity = 0x0405,
     TableInvalid = 0x0406,
     MasterCycle = 0x0407,
+    CoordSystemNotSupported = 0x0408,
+    PlanningLate = 0x0409,
+    RouteNotFound = 0x040A,
+    StartInKeepOut = 0x040B,
+    GoalInKeepOut = 0x040C,
+    NotAtPathStart = 0x040D,
+    ObstaclesMissing = 0x040E,
     // Homing
     HomingTimeout = 0x0501,
     HomingDistance = 0x0502,
@@ -61,6 +74,7 @@ enum class ErrorId : std::uint16_t {
     EncoderError = 0x0604,
     PowerLost = 0x0605,
     SetpointJump = 0x0606,
+    GroupFault = 0x0607,
     // Bus
     CommunicationLost = 0x0701,
     WorkingCounter = 0x0702,

@@ -41,6 +41,9 @@ public:
     /// rt. A state from outside the profile, for the emergency ramp; at rest when it does not move.
     void force(core::Position position, core::Velocity velocity) noexcept;
 
+    /// rt. A state from the axis' group; never at rest before hold() or a plan of its own.
+    void lead(const planner::State& state) noexcept;
+
     [[nodiscard]] const planner::State& set() const noexcept { return set_; }
     /// The last step of the profile has been made.
     [[nodiscard]] bool finished() const noexcept { return step_ >= steps_; }

@@ -3,9 +3,11 @@
 #include <memory>
 #include <string>
 #include <takt/axis/axis_params.hpp>
+#include <takt/axis/group_params.hpp>
 #include <takt/axis/machine_stop_params.hpp>
 #include <takt/bridge/bridge_params.hpp>
 #include <takt/fieldbus/fieldbus_params.hpp>
+#include <takt/planner/roadmap/roadmap_params.hpp>
 #include <takt/program/program_params.hpp>
 #include <takt/scheduler/scheduler_params.hpp>
 #include <takt/twin/twin_params.hpp>
@@ -21,6 +23,8 @@ struct MachineConfig {
     fieldbus::NetworkParams network;
     scheduler::SchedulerParams scheduler;
     std::vector<axis::AxisParams> axes;
+    std::vector<axis::GroupParams> groups;
+    std::vector<planner::roadmap::ObstacleParams> obstacles;  ///< one at most for each group
     std::vector<program::ProgramParams> programs;
     axis::MachineStopParams machineStop;  ///< inputs name slaves and mapped entries that exist
     bridge::BridgeParams bridge;

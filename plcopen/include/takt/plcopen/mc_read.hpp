@@ -24,12 +24,23 @@ protected:
     ReadBlock() = default;
     ~ReadBlock() = default;
 
-    /// rt. Sets the common outputs. \return the view to read from, null when there is nothing to
-    /// show
-    const axis::AxisView* read(const axis::AxisRef& axis, bool needsInputs) noexcept;
+    /// rt. Sets the common outputs. `ready(view)` is false while what is to be read will be there
+    /// again later. \return the view to read from, null when there is nothing to show
+    template <typename Ref, typename Ready>
+    auto read(const Ref& ref, Ready&& ready) noexcept -> decltype(&ref.port().view()) {
+        if (!begin(ref.valid())) return nullptr;
+        const auto& view = ref.port().view();
+        if (view.traits == nullptr || !ready(view)) return nullptr;
+        Valid = true;
+        return &view;
+    }
+    /// rt. What was asked for does not exist: an error until Enable rises again.
+    void refuse(axis::ErrorId error) noexcept;
 
 private:
-    bool refused_{false};  ///< a wrong reference stays an error until Enable rises again
+    [[nodiscard]] bool begin(bool valid) noexcept;
+
+    axis::ErrorId refused_{axis::ErrorId::None};  ///< stays an error until Enable rises again
 };
 
 /// Exactly one state output is TRUE while Valid.

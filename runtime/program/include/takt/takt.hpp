@@ -9,6 +9,7 @@
 namespace takt {
 
 using axis::AxisRef;
+using axis::GroupRef;
 using program::Inspector;
 using program::Machine;
 using program::Program;

@@ -70,7 +70,7 @@ enum class AxisState : std::uint8_t {
     Stopping,
     ErrorStop,
 };
-enum class GroupState : std::uint8_t { Disabled, Standby, Moving, Homing, Stopping, ErrorStop };
+enum class GroupState : std::uint8_t { Disabled, Standby, Homing, Moving, Stopping, ErrorStop };
 
 struct MachineSample {
     std::uint64_t cycle{0};

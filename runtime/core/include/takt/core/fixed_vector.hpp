@@ -23,6 +23,11 @@ public:
         --size_;
     }
     constexpr void clear() noexcept { size_ = 0; }
+    /// Keeps the first `size` items. \pre size <= size()
+    constexpr void truncate(std::size_t size) noexcept {
+        assert(size <= size_);
+        size_ = size;
+    }
 
     [[nodiscard]] constexpr std::size_t size() const noexcept { return size_; }
     [[nodiscard]] constexpr bool empty() const noexcept { return size_ == 0; }

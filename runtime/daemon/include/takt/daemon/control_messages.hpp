@@ -45,6 +45,16 @@ struct AxisReport {
     std::string holder{};  ///< program that holds it; empty = none
 };
 
+struct GroupReport {
+    std::string name{};
+    std::string unit{};  ///< of path length
+    std::string state{};
+    double path{0.0};      ///< length travelled on paths so far
+    double velocity{0.0};  ///< along the path
+    std::uint64_t queued{0};
+    std::string error{};  ///< in words; empty = none
+};
+
 struct WatchReport {
     std::string name{};
     double value{0.0};
@@ -73,6 +83,7 @@ struct StatusReport {
     std::uint64_t bridgeStarts{0};     ///< 0 = the machine has no bridge
     std::uint64_t bridgePublished{0};  ///< status samples since its last start
     std::vector<AxisReport> axes;
+    std::vector<GroupReport> groups;
     std::vector<ProgramReport> programs;
 };
 

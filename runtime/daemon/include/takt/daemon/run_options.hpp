@@ -38,6 +38,7 @@ struct RunOptions {
     std::optional<core::Duration> length;  ///< stop after so much time in OP
     std::filesystem::path trace;           ///< CSV; empty = none
     std::filesystem::path plot;            ///< SVG
+    std::filesystem::path topView;         ///< SVG of the first group's plane, with keep-outs
     std::filesystem::path capture;         ///< pcapng
     /// On the wall clock, for programs of a simulated run: a call that takes longer ends the
     /// process.

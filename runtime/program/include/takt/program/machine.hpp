@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <takt/axis/axis_port.hpp>
+#include <takt/axis/group_port.hpp>
 #include <takt/core/time.hpp>
 #include <takt/core/units.hpp>
 #include <vector>
@@ -20,11 +21,21 @@ public:
         bool asked{false};  ///< the program has asked for it by name
     };
 
-    Machine(std::vector<NamedAxis> axes, core::Duration cycleTime);
+    struct NamedGroup {
+        std::string name;
+        axis::GroupRef ref;
+        std::vector<std::size_t> axes;  ///< its members, by their place in the machine
+        bool asked{false};              ///< the program has asked for it by name
+    };
+
+    Machine(std::vector<NamedAxis> axes, std::vector<NamedGroup> groups, core::Duration cycleTime);
 
     /// The axis of that name in the machine file. An unknown name gives an invalid handle, and the
     /// machine is refused after `start` with the names that exist. For `start`; costs a search.
     [[nodiscard]] axis::AxisRef axis(std::string_view name);
+
+    /// The group of that name, likewise.
+    [[nodiscard]] axis::GroupRef group(std::string_view name);
 
     /// rt. Number of this call of `cycle`, from 0. Bus cycles when the program runs in every one.
     [[nodiscard]] core::CycleNumber cycle() const noexcept { return cycle_; }
@@ -52,7 +63,12 @@ public:
     void setCycle(core::CycleNumber cycle) noexcept { cycle_ = cycle; }
     /// Names that `axis` did not know.
     [[nodiscard]] const std::vector<std::string>& unknownAxes() const noexcept { return unknown_; }
-    [[nodiscard]] const std::vector<NamedAxis>& axes() const noexcept { return axes_; }
+    /// Names that `group` did not know.
+    [[nodiscard]] const std::vector<std::string>& unknownGroups() const noexcept {
+        return unknownGroups_;
+    }
+    /// rt. The program has asked for this axis, or for a group that has it.
+    [[nodiscard]] bool uses(std::size_t axis) const noexcept;
     /// rt. Takes over what the program asked for in this call: stop, reset.
     struct StopWishes {
         bool stop{false};
@@ -69,7 +85,9 @@ public:
 
 private:
     std::vector<NamedAxis> axes_;
+    std::vector<NamedGroup> groups_;
     std::vector<std::string> unknown_;
+    std::vector<std::string> unknownGroups_;
     core::Seconds cycleTime_;
     core::CycleNumber cycle_{0};
     std::array<char, 200> failure_{};
