@@ -277,7 +277,7 @@ TEST_F(MachineRule, RefusesAStartupTypeOfAnotherSize) {
                 "0x6065:00 has 32 bits", "uint32");
 }
 TEST_F(MachineRule, WantsATypeForAnObjectOutsideTheDictionary) {
-    expectError("index=\"0x6065\" value=\"20000\"", "index=\"0x2402\" sub=\"1\" value=\"0\"",
+    expectError("index=\"0x6065\" value=\"20000\"", "index=\"0x2F00\" sub=\"1\" value=\"0\"",
                 "'type' is missing", "uint16");
 }
 

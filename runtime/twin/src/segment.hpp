@@ -61,9 +61,7 @@ public:
     [[nodiscard]] const SimulatedDevice& device(std::size_t i) const noexcept {
         return *devices_[i];
     }
-    [[nodiscard]] SimulatedDevice& device(std::size_t i) noexcept {
-        return *devices_[i];
-    }
+    [[nodiscard]] SimulatedDevice& device(std::size_t i) noexcept { return *devices_[i]; }
     /// While cut, frames leave the host but nothing reaches the devices.
     void cutCable(bool cut) noexcept { cut_ = cut; }
     void onSync0(std::function<void(std::size_t, core::TrueTime)> observer) {
