@@ -6,8 +6,7 @@
 #include <limits>
 #include <takt/axis/admit.hpp>
 #include <takt/axis/axis.hpp>
-
-#include "ramp.hpp"
+#include <takt/planner/speed_change.hpp>
 
 namespace takt::axis {
 
@@ -23,7 +22,7 @@ struct Link {
     double wanted;
     double room;
     double endSpeed;
-    RampLimits braking;
+    planner::RampLimits braking;
 };
 
 double wantedSpeed(BufferMode mode, double previous, double next) noexcept {
@@ -126,7 +125,7 @@ Velocity jointSpeed(const AxisTraits& traits, const Arrival& arrival,
     if (links == 0) return Velocity{};
     double speed = chain[links - 1].endSpeed;
     for (std::size_t i = links; i-- > 0;) {
-        speed = fastestWithin(chain[i].room, speed, chain[i].wanted, chain[i].braking);
+        speed = planner::fastestWithin(chain[i].room, speed, chain[i].wanted, chain[i].braking);
     }
     return Velocity{speed};
 }

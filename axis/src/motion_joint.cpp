@@ -5,9 +5,10 @@
 #include <takt/planner/profile_query.hpp>
 
 #include "look_ahead.hpp"
-#include "ramp.hpp"
 
 /// Moves that pass their end without stopping there.
+#include <takt/planner/speed_change.hpp>
+
 namespace takt::axis {
 
 using core::Acceleration;
@@ -32,7 +33,7 @@ planner::Limits upTo(planner::Limits limits, double speed) noexcept {
     return limits;
 }
 
-RampLimits speedingUp(const planner::Limits& limits, bool forward) noexcept {
+planner::RampLimits speedingUp(const planner::Limits& limits, bool forward) noexcept {
     const Acceleration a = forward ? limits.maxAcceleration : -limits.minAcceleration;
     return {a.count(), limits.jerk.count()};
 }
@@ -133,13 +134,13 @@ double Motion::reachable(const Way& way, double end) const noexcept {
     const double sign = way.forward ? 1.0 : -1.0;
     const double v = sign * set_.velocity.count();
     const double a = sign * set_.acceleration.count();
-    const RampLimits up = speedingUp(way.limits, way.forward);
+    const planner::RampLimits up = speedingUp(way.limits, way.forward);
     // The present acceleration as part of a ramp that began (or will begin) without one.
     const double t = a / up.jerk;
     const double base = v - a * t / 2.0;
     const double travelled = base * t + up.jerk * t * t * t / 6.0;
     const double room = std::abs((way.target - set_.position).count()) * (1.0 - 1e-9) + travelled;
-    return fastestWithin(room, base, end, up);
+    return planner::fastestWithin(room, base, end, up);
 }
 
 bool Motion::beginDirect(const Way& way, double end) noexcept {
@@ -159,9 +160,9 @@ bool Motion::beginDirect(const Way& way, double end) noexcept {
 bool Motion::beginStaged(const Way& way, double end) noexcept {
     const double sign = way.forward ? 1.0 : -1.0;
     const double cruise = way.limits.maxVelocity.count();
-    const RampLimits up = speedingUp(way.limits, way.forward);
+    const planner::RampLimits up = speedingUp(way.limits, way.forward);
     const Position meet =
-        way.target - Distance{sign * rampDistance(cruise, end, up) * (1.0 + 1e-9)};
+        way.target - Distance{sign * planner::rampDistance(cruise, end, up) * (1.0 + 1e-9)};
     if (sign * (meet - set_.position).count() <= 0.0) return false;
     const Distance tolerance = traits_->resolution * kWayTolerance;
     const State joint = passing(meet, way.forward, cruise);

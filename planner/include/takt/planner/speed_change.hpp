@@ -2,7 +2,7 @@
 
 /// Changes of velocity with zero acceleration at both ends, jerk-limited. Plain numbers in user
 /// units and seconds, positive in the direction of travel.
-namespace takt::axis {
+namespace takt::planner {
 
 /// What a change of velocity may use.
 struct RampLimits {
@@ -19,4 +19,4 @@ struct RampLimits {
 [[nodiscard]] double fastestWithin(double distance, double other, double cap,
                                    const RampLimits& limits) noexcept;
 
-}  // namespace takt::axis
+}  // namespace takt::planner

@@ -1,9 +1,8 @@
-#include "ramp.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <takt/planner/speed_change.hpp>
 
-namespace takt::axis {
+namespace takt::planner {
 
 double rampDistance(double from, double to, const RampLimits& limits) noexcept {
     const double change = std::abs(to - from);
@@ -21,12 +20,12 @@ double fastestWithin(double distance, double other, double cap, const RampLimits
     double low = std::max(other, 0.0);
     if (rampDistance(other, low, limits) > distance) return 0.0;
     double high = cap;
-    constexpr int kHalvings = 48;  // to the last bits of a double
-    for (int i = 0; i < kHalvings; ++i) {
+    constexpr int Halvings = 48;  // to the last bits of a double
+    for (int i = 0; i < Halvings; ++i) {
         const double middle = 0.5 * (low + high);
         (rampDistance(other, middle, limits) <= distance ? low : high) = middle;
     }
     return low;
 }
 
-}  // namespace takt::axis
+}  // namespace takt::planner
