@@ -15,7 +15,7 @@ install(TARGETS takt_command takt_library EXPORT takt-targets
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-foreach(room core wire fieldbus twin scheduler record program daemon cli)
+foreach(room core wire fieldbus twin scheduler record bridge program daemon cli)
     install(DIRECTORY runtime/${room}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
 foreach(room planner planner/roadmap axis plcopen config)
@@ -23,6 +23,9 @@ foreach(room planner planner/roadmap axis plcopen config)
 endforeach()
 install(FILES ${CMAKE_BINARY_DIR}/runtime/program/include/takt/program/version.hpp
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/takt/program)
+# Started by takt, not by people. The library finds it from where it lies itself.
+install(TARGETS takt_bridge_process RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/takt)
+install(FILES runtime/bridge/idl/takt.idl DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/idl)
 install(DIRECTORY config/schema/ DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/schema)
 install(DIRECTORY samples/devices/ DESTINATION ${CMAKE_INSTALL_DATADIR}/takt/devices)
 # The package's script puts it to /etc/default/takt, unless there is one.

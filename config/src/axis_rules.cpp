@@ -176,6 +176,7 @@ SlavePart* tieToSlave(const AxisPart& axis, const ElementReader& drive, NetworkP
     const std::string& name = axis.params.drive.slave;
     if (name.empty()) return nullptr;
     SlavePart* const slave = network.find(name);
+    if (slave == nullptr && !network.slavesKnown) return nullptr;
     if (slave == nullptr) {
         std::string known;
         for (const SlavePart& other : network.slaves) {
@@ -191,7 +192,7 @@ SlavePart* tieToSlave(const AxisPart& axis, const ElementReader& drive, NetworkP
     }
     slave->hasAxis = true;
     if (!slave->params.device) return nullptr;
-    checkCyclicPositionEntries(*slave);
+    checkCyclicPositionEntries(*slave, axis.params.drive.bound);
     if (!slave->params.dc.enabled) {
         slave->reader.diagnostics().warning(
             slave->reader.place(),

@@ -49,13 +49,19 @@ ElementReader::ElementReader(XmlElement element, std::string label, std::string 
       file_{std::move(file)},
       diagnostics_{&diagnostics} {}
 
+ElementReader::ElementReader(Place place, std::string label, Diagnostics& diagnostics)
+    : label_{std::move(label)},
+      file_{std::move(place.file)},
+      line_{place.line},
+      diagnostics_{&diagnostics} {}
+
 Place ElementReader::place() const {
-    return {file_, element_.line()};
+    return {file_, element_.present() ? element_.line() : line_};
 }
 
 Place ElementReader::place(std::string_view attribute) const {
     const auto found = element_.attribute(attribute);
-    return {file_, found ? found->line : element_.line()};
+    return {file_, found ? found->line : place().line};
 }
 
 void ElementReader::error(std::string_view attribute, const std::string& what, std::string allowed,

@@ -38,6 +38,9 @@ public:
     ElementReader(XmlElement element, std::string label, std::string file,
                   Diagnostics& diagnostics);
 
+    /// For what stands in a file that is read otherwise: it has a place and no attributes.
+    ElementReader(Place place, std::string label, Diagnostics& diagnostics);
+
     [[nodiscard]] bool present() const noexcept { return element_.present(); }
     [[nodiscard]] XmlElement element() const noexcept { return element_; }
     [[nodiscard]] const std::string& label() const noexcept { return label_; }
@@ -91,6 +94,7 @@ private:
     XmlElement element_;
     std::string label_;
     std::string file_;
+    int line_{0};  ///< where there is no element
     Diagnostics* diagnostics_;
     std::vector<std::string> askedAttributes_;
     std::vector<std::string> askedChildren_;

@@ -113,8 +113,10 @@ wire::PdoEntryDescription readPdoEntry(XmlElement element, const EsiValues& valu
     return entry;
 }
 
-std::vector<wire::PdoDescription> readPdos(XmlElement device, std::string_view name,
-                                           const EsiValues& values) {
+}  // namespace
+
+std::vector<wire::PdoDescription> readPdoElements(XmlElement device, std::string_view name,
+                                                  const EsiValues& values) {
     std::vector<wire::PdoDescription> pdos;
     for (const XmlElement element : device.children(name)) {
         wire::PdoDescription pdo;
@@ -131,6 +133,8 @@ std::vector<wire::PdoDescription> readPdos(XmlElement device, std::string_view n
     }
     return pdos;
 }
+
+namespace {
 
 void readMailbox(XmlElement device, DeviceDescription& description, const EsiValues& values) {
     const XmlElement element = device.child("Mailbox");
@@ -186,8 +190,8 @@ EsiDevice readDevice(XmlElement element, const std::string& file, std::uint32_t 
     readIdentity(element, description, values);
     readInfo(element, description, values);
     readSyncManagers(element, description, values);
-    description.rxPdos = readPdos(element, "RxPdo", values);
-    description.txPdos = readPdos(element, "TxPdo", values);
+    description.rxPdos = readPdoElements(element, "RxPdo", values);
+    description.txPdos = readPdoElements(element, "TxPdo", values);
     readMailbox(element, description, values);
     readDcModes(element, description, values);
     description.objects = readDictionary(element, values);

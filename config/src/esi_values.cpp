@@ -56,6 +56,22 @@ core::Duration EsiValues::milliseconds(XmlElement element, std::string_view name
     return std::chrono::milliseconds{child(element, name, 0, Hour, count)};
 }
 
+std::optional<std::vector<std::uint8_t>> hexBytes(std::string_view text) {
+    const auto digit = [](char c) {
+        if (c >= '0' && c <= '9') return c - '0';
+        if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+        if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+        return -1;
+    };
+    if (text.size() % 2 != 0) return std::nullopt;
+    std::vector<std::uint8_t> bytes;
+    for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+        if (digit(text[i]) < 0 || digit(text[i + 1]) < 0) return std::nullopt;
+        bytes.push_back(static_cast<std::uint8_t>(digit(text[i]) * 16 + digit(text[i + 1])));
+    }
+    return bytes;
+}
+
 std::string englishName(XmlElement element) {
     const auto names = element.children("Name");
     for (const XmlElement name : names) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <takt/config/diagnostics.hpp>
 #include <takt/core/time.hpp>
+#include <vector>
 
 #include "xml_document.hpp"
 
@@ -49,6 +50,9 @@ private:
     std::string file_;
     Diagnostics* diagnostics_;
 };
+
+/// hexBinary: pairs of hexadecimal digits.
+[[nodiscard]] std::optional<std::vector<std::uint8_t>> hexBytes(std::string_view text);
 
 /// The English name of an element with several <Name LcId="…">, else the first.
 [[nodiscard]] std::string englishName(XmlElement element);

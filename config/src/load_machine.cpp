@@ -142,12 +142,15 @@ MachineConfig readMachine(const XmlDocument& document, const Folders& librarySea
     machine.machineStop = readMachineStop(root.childReader("MachineStop"), network, axes);
     machine.twin = readTwin(root.childReader("Twin"), network, axes);
     readRealtime(root.childReader("Realtime"), machine.scheduler);
+    machine.bridge = readBridge(root.childReader("Bridge"), network.params.cycle);
     noteIdleSlaves(network);
     root.finish();
     machine.network = std::move(network.params);
     machine.scheduler.cycle = machine.network.cycle;
-    for (SlavePart& slave : network.slaves)
+    for (SlavePart& slave : network.slaves) {
+        machine.twinDevices.push_back(slave.twinDevice ? slave.twinDevice : slave.params.device);
         machine.network.slaves.push_back(std::move(slave.params));
+    }
     for (const AxisPart& axis : axes) {
         machine.axes.push_back(axis.params);
         // One number for the bus and its axes: n_lost.

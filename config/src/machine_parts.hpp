@@ -4,10 +4,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <takt/config/eni_reader.hpp>
 #include <takt/config/load_machine.hpp>
 #include <takt/config/machine_config.hpp>
 #include <vector>
 
+#include "device_catalogue.hpp"
 #include "drive_profile.hpp"
 #include "element_reader.hpp"
 
@@ -21,6 +23,8 @@ struct SlavePart {
     ElementReader reader;
     fieldbus::SlaveParams params;
     const DriveProfile* profile{nullptr};
+    /// What stands there when the machine is simulated; nullptr: what is configured.
+    std::shared_ptr<const wire::DeviceDescription> twinDevice;
     bool hasAxis{false};
 };
 
@@ -30,6 +34,9 @@ struct NetworkPart {
     ElementReader reader;
     fieldbus::NetworkParams params;  ///< without its slaves
     std::vector<SlavePart> slaves;
+    Catalogue catalogue;
+    std::optional<EniNetwork> eni;
+    bool slavesKnown{true};  ///< false: a network file that could not be read, which was told
 
     [[nodiscard]] SlavePart* find(std::string_view name) noexcept {
         for (SlavePart& slave : slaves) {
@@ -50,10 +57,18 @@ struct AxisPart {
 /// Reads <Network>: ESI files, slaves with their PDOs, DC, watchdog and start-up objects.
 [[nodiscard]] NetworkPart readNetwork(ElementReader reader, const std::filesystem::path& folder);
 
+/// Takes the slaves of a network file (ENI) in the place of <Slave> elements. `cycle`: as the
+/// machine file has it.
+void readListedSlaves(NetworkPart& network, const std::filesystem::path& file,
+                      std::optional<core::Duration> cycle);
+/// Reads <Bind>: variables of the process image in the place of objects.
+[[nodiscard]] axis::DriveBindings readBind(ElementReader reader, const NetworkPart& network,
+                                           const SlavePart* slave);
+
 /// Reads and checks the <Pdo> children of a slave, or takes the defaults of its device.
 void readPdos(SlavePart& slave);
-/// A cyclic synchronous position drive needs these entries.
-void checkCyclicPositionEntries(const SlavePart& slave);
+/// A cyclic synchronous position drive needs these entries, mapped or bound to variables.
+void checkCyclicPositionEntries(const SlavePart& slave, const axis::DriveBindings& bound);
 
 /// Reads the <Startup> children of a slave.
 void readStartup(SlavePart& slave);
@@ -73,7 +88,7 @@ void addDriveObjects(SlavePart& slave, const AxisPart& axis, std::uint32_t lostL
     const std::vector<axis::GroupParams>& groups);
 
 /// Reads <Twin>; there is one device for each slave, whatever the file says.
-[[nodiscard]] twin::TwinParams readTwin(ElementReader reader, const NetworkPart& network,
+[[nodiscard]] twin::TwinParams readTwin(ElementReader reader, NetworkPart& network,
                                         const std::vector<AxisPart>& axes);
 
 /// Reads <MachineStop> and ties its inputs to mapped entries.
@@ -87,6 +102,9 @@ void addDriveObjects(SlavePart& slave, const AxisPart& axis, std::uint32_t lostL
 
 /// Reads <Realtime>: how the cycle runs on a real network.
 void readRealtime(ElementReader reader, scheduler::SchedulerParams& params);
+
+/// Reads <Bridge>: the doors to other processes.
+[[nodiscard]] bridge::BridgeParams readBridge(ElementReader reader, core::Duration cycle);
 
 /// Position, velocity, acceleration and jerk in the user unit of an axis.
 struct UnitDimensions {

@@ -20,6 +20,7 @@ struct Unit {
 constexpr std::array Times{Unit{"ms", 1'000'000, 1}, Unit{"us", 1000, 1}, Unit{"ns", 1, 1},
                            Unit{"s", 1'000'000'000, 1}, Unit{"min", 60'000'000'000, 1}};
 constexpr std::array Frequencies{Unit{"ppm", 1, 1}};
+constexpr std::array Rates{Unit{"Hz", 1, 1}, Unit{"kHz", 1000, 1}};
 constexpr std::array Shares{Unit{"%", 1, 100}};
 constexpr std::array Torques{Unit{"Nm", 1, 1}, Unit{"mNm", 1, 1000}};
 constexpr std::array Inertias{Unit{"kg cm^2", 1, 10'000}, Unit{"kg m^2", 1, 1},
@@ -44,6 +45,8 @@ std::span<const Unit> unitList(Dimension dimension) noexcept {
             return Times;
         case Dimension::Frequency:
             return Frequencies;
+        case Dimension::Rate:
+            return Rates;
         case Dimension::Share:
             return Shares;
         case Dimension::Torque:

@@ -15,6 +15,7 @@ namespace takt::config {
 enum class Dimension : std::uint8_t {
     Time,                 ///< ns
     Frequency,            ///< ppm: deviation of a clock
+    Rate,                 ///< Hz
     Share,                ///< 1: part of a whole, written in %
     Torque,               ///< Nm
     Inertia,              ///< kg m^2

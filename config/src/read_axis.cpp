@@ -21,6 +21,7 @@ void readDrive(AxisPart& axis, NetworkPart& network) {
         reader.integer("delayCycles", {0, 30}).value_or(axis.params.supervision.driveDelayCycles));
     const bool confirmed =
         reader.choice<bool>("lostCommunication", {{"confirmed", true}}).value_or(false);
+    drive.bound = readBind(reader.childReader("Bind"), network, network.find(drive.slave));
     reader.finish();
     SlavePart* const slave = tieToSlave(axis, reader, network);
     if (slave == nullptr) return;

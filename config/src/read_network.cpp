@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <set>
-#include <system_error>
 
-#include "esi_devices.hpp"
 #include "machine_parts.hpp"
 #include "names.hpp"
 
@@ -27,115 +24,10 @@ constexpr core::Duration LongestWatchdog = 65535 * WatchdogUnit;
 constexpr std::uint16_t ActivateSync0 = 0x0200;
 constexpr std::uint16_t ActivateSync1 = 0x0400;
 
-struct DeviceFile {
-    std::vector<EsiDevice> devices;
-    std::vector<std::shared_ptr<const wire::DeviceDescription>> shared;  ///< made on first use
-};
-
-/// All devices of the ESI files that the network names.
-struct Catalogue {
-    std::vector<DeviceFile> files;
-    bool complete{true};  ///< every file could be read
-};
-
 std::string show(core::Duration time) {
     if (time.count() % 1'000'000 == 0) return fmt::format("{} ms", time.count() / 1'000'000);
     if (time.count() % 1000 == 0) return fmt::format("{} us", time.count() / 1000);
     return fmt::format("{} ns", time.count());
-}
-
-std::string show(const wire::Identity& identity) {
-    return fmt::format("vendor 0x{:08X}, product 0x{:08X}, revision 0x{:08X}", identity.vendor,
-                       identity.product, identity.revision);
-}
-
-Catalogue readCatalogue(ElementReader& network, const std::filesystem::path& folder) {
-    Catalogue catalogue;
-    for (const XmlElement element : network.children("Esi")) {
-        const Place where{network.place().file, element.line()};
-        ElementReader reader{element, "network, <Esi>", where.file, network.diagnostics()};
-        const auto name = reader.text("file", Presence::Required);
-        reader.finish();
-        if (!name) {
-            catalogue.complete = false;
-            continue;
-        }
-        const std::filesystem::path path = (folder / *name).lexically_normal();
-        std::error_code fault;
-        if (!std::filesystem::is_regular_file(path, fault)) {
-            reader.error("file", fmt::format("there is no device file {}", path.string()),
-                         "a path relative to the machine file", "correct the path or add the file");
-            catalogue.complete = false;
-            continue;
-        }
-        const std::size_t before = network.diagnostics().errorCount();
-        DeviceFile file;
-        file.devices = readEsiDevices(path, network.diagnostics());
-        file.shared.resize(file.devices.size());
-        if (network.diagnostics().errorCount() != before) catalogue.complete = false;
-        catalogue.files.push_back(std::move(file));
-    }
-    return catalogue;
-}
-
-struct WantedIdentity {
-    std::optional<std::int64_t> vendor;
-    std::optional<std::int64_t> product;
-    std::optional<std::int64_t> revision;
-
-    [[nodiscard]] bool matches(const wire::Identity& identity) const noexcept {
-        return (!vendor || *vendor == identity.vendor) &&
-               (!product || *product == identity.product) &&
-               (!revision || *revision == identity.revision);
-    }
-};
-
-/// The device wanted; of several the one with the highest revision.
-std::shared_ptr<const wire::DeviceDescription> selectDevice(const std::string& type,
-                                                            const WantedIdentity& wanted,
-                                                            const ElementReader& reader,
-                                                            Catalogue& catalogue) {
-    DeviceFile* chosenFile = nullptr;
-    std::size_t chosen = 0;
-    std::set<std::string> types;
-    std::string identities;
-    for (DeviceFile& file : catalogue.files) {
-        for (std::size_t i = 0; i < file.devices.size(); ++i) {
-            const wire::DeviceDescription& device = file.devices[i].description;
-            types.insert(device.type);
-            if (device.type != type) continue;
-            identities += (identities.empty() ? "" : "; ") + show(device.identity);
-            const bool better = chosenFile == nullptr ||
-                                device.identity.revision >
-                                    chosenFile->devices[chosen].description.identity.revision;
-            if (!wanted.matches(device.identity) || !better) continue;
-            chosenFile = &file;
-            chosen = i;
-        }
-    }
-    if (chosenFile != nullptr) {
-        auto& shared = chosenFile->shared[chosen];
-        if (!shared) {
-            reader.diagnostics().append(chosenFile->devices[chosen].diagnostics);
-            shared =
-                std::make_shared<wire::DeviceDescription>(chosenFile->devices[chosen].description);
-        }
-        return shared;
-    }
-    if (!identities.empty()) {
-        const char* const at = wanted.revision ? "revision" : wanted.product ? "product" : "vendor";
-        reader.error(at, fmt::format("no device '{}' with this identity is in the ESI files", type),
-                     identities, "correct the numbers, or add the ESI file of that device");
-    } else if (catalogue.complete) {
-        const std::vector<std::string> known{types.begin(), types.end()};
-        const std::string nearest = nearestName(type, known);
-        reader.error(
-            "device",
-            fmt::format("no device '{}' is in the ESI files{}", type,
-                        nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest)),
-            known.empty() ? "none, no <Esi> file is named" : joined(known));
-    }
-    return nullptr;
 }
 
 void readDc(SlavePart& slave, core::Duration cycle) {
@@ -307,6 +199,14 @@ void checkCycle(const NetworkPart& network) {
     }
 }
 
+void checkCycleRange(NetworkPart& network) {
+    core::Duration& cycle = network.params.cycle;
+    if (cycle >= ShortestCycle && cycle <= LongestCycle) return;
+    network.reader.error("cycle", fmt::format("a cycle of {} is not supported", show(cycle)),
+                         "50 us to 100 ms");
+    cycle = milliseconds{1};
+}
+
 }  // namespace
 
 NetworkPart readNetwork(ElementReader networkReader, const std::filesystem::path& folder) {
@@ -314,12 +214,9 @@ NetworkPart readNetwork(ElementReader networkReader, const std::filesystem::path
     ElementReader& reader = network.reader;
     reader.relabel("network");
     fieldbus::NetworkParams& params = network.params;
-    params.cycle = reader.time("cycle", Sign::Positive).value_or(params.cycle);
-    if (params.cycle < ShortestCycle || params.cycle > LongestCycle) {
-        reader.error("cycle", fmt::format("a cycle of {} is not supported", show(params.cycle)),
-                     "50 us to 100 ms");
-        params.cycle = milliseconds{1};
-    }
+    const auto cycle = reader.time("cycle", Sign::Positive);
+    params.cycle = cycle.value_or(params.cycle);
+    checkCycleRange(network);
     params.lostLimit = static_cast<std::uint32_t>(
         reader.integer("lostFrames", {1, 1000}).value_or(params.lostLimit));
     params.sendJitter = reader.time("sendJitter").value_or(params.sendJitter);
@@ -334,8 +231,13 @@ NetworkPart readNetwork(ElementReader networkReader, const std::filesystem::path
                      fmt::format("'{}' is no name of a network interface", params.interface),
                      "at most 15 characters without blanks and '/', for example \"eth1\"");
     }
-    Catalogue catalogue = readCatalogue(reader, folder);
-    readSlaves(network, catalogue);
+    network.catalogue = readCatalogue(reader, folder);
+    if (const auto eni = reader.text("eni")) {
+        readListedSlaves(network, (folder / *eni).lexically_normal(), cycle);
+        checkCycleRange(network);
+    } else {
+        readSlaves(network, network.catalogue);
+    }
     checkCycle(network);
     reader.finish();
     return network;

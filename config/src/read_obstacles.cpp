@@ -133,12 +133,32 @@ private:
                                 members_.group->unit, to->value, members_.group->unit),
                     "from below to");
             }
+            if (axis) warnIfOutside(reader, *axis, from, to);
             roadmap::KeepOutSpan span;
             span.axis = axis.value_or(0);
             if (from) span.from = core::Position{from->value};
             if (to) span.to = core::Position{to->value};
             keepOut_.spans.push_back(span);
         }
+    }
+
+    /// A keep-out that no axis can reach was probably meant to be elsewhere.
+    void warnIfOutside(const ElementReader& reader, std::size_t place,
+                       const std::optional<Quantity>& from,
+                       const std::optional<Quantity>& to) const {
+        const axis::AxisParams& axis = *members_.axes[place];
+        const axis::LimitParams& limits = axis.limits;
+        if (!limits.softNegative || !limits.softPositive) return;
+        const double clearance = keepOut_.clearance.count();
+        const double low = limits.softNegative->count() - clearance;
+        const double high = limits.softPositive->count() + clearance;
+        if (!((from && from->value > high) || (to && to->value < low))) return;
+        reader.diagnostics().warning(
+            reader.place(),
+            fmt::format("{}: it lies beyond the soft limits of axis '{}' and is in nobody's way",
+                        reader_.label(), axis.name),
+            fmt::format("{:g} {} to {:g} {}", limits.softNegative->count(), axis.unit,
+                        limits.softPositive->count(), axis.unit));
     }
 
     /// Its place in the group.

@@ -261,10 +261,11 @@ void readPdos(SlavePart& slave) {
     }
 }
 
-void checkCyclicPositionEntries(const SlavePart& slave) {
+void checkCyclicPositionEntries(const SlavePart& slave, const axis::DriveBindings& bound) {
     namespace cia402 = core::cia402;
-    const auto require = [&slave](const std::vector<PdoParams>& pdos, std::uint16_t index,
-                                  std::uint8_t bits, const char* what) {
+    const auto require = [&slave](const std::vector<PdoParams>& pdos, core::PdoSlot variable,
+                                  std::uint16_t index, std::uint8_t bits, const char* what) {
+        if (variable.present()) return;
         for (const PdoParams& pdo : pdos) {
             for (const PdoEntryParams& entry : pdo.entries) {
                 if (entry.index == index && entry.subindex == 0 && entry.bits == bits) return;
@@ -276,16 +277,17 @@ void checkCyclicPositionEntries(const SlavePart& slave) {
             "and 0x6041, 0x6061 and 0x6064 in the inputs");
     };
     const auto& params = slave.params;
-    require(params.outputs, cia402::ControlWord, 16,
+    require(params.outputs, bound.controlword, cia402::ControlWord, 16,
             "the controlword 0x6040 (16 bits) in the outputs");
-    require(params.outputs, cia402::ModesOfOperation, 8,
+    require(params.outputs, bound.modeOfOperation, cia402::ModesOfOperation, 8,
             "the mode of operation 0x6060 (8 bits) in the outputs");
-    require(params.outputs, cia402::TargetPosition, 32,
+    require(params.outputs, bound.targetPosition, cia402::TargetPosition, 32,
             "the target position 0x607A (32 bits) in the outputs");
-    require(params.inputs, cia402::StatusWord, 16, "the statusword 0x6041 (16 bits) in the inputs");
-    require(params.inputs, cia402::ModesOfOperationDisplay, 8,
+    require(params.inputs, bound.statusword, cia402::StatusWord, 16,
+            "the statusword 0x6041 (16 bits) in the inputs");
+    require(params.inputs, bound.modeDisplay, cia402::ModesOfOperationDisplay, 8,
             "the mode display 0x6061 (8 bits) in the inputs");
-    require(params.inputs, cia402::PositionActual, 32,
+    require(params.inputs, bound.actualPosition, cia402::PositionActual, 32,
             "the actual position 0x6064 (32 bits) in the inputs");
 }
 

@@ -133,7 +133,7 @@ std::vector<twin::TwinDeviceParams> plainDevices(const NetworkPart& network,
 
 }  // namespace
 
-twin::TwinParams readTwin(ElementReader reader, const NetworkPart& network,
+twin::TwinParams readTwin(ElementReader reader, NetworkPart& network,
                           const std::vector<AxisPart>& axes) {
     twin::TwinParams params;
     params.devices = plainDevices(network, axes);
@@ -150,7 +150,7 @@ twin::TwinParams readTwin(ElementReader reader, const NetworkPart& network,
                                         [&](const auto& device) { return device.slave == name; });
         if (!name.empty()) deviceReader.relabel(fmt::format("twin of '{}'", name));
         if (found == params.devices.end()) {
-            if (!name.empty()) {
+            if (!name.empty() && network.slavesKnown) {
                 deviceReader.error("slave", fmt::format("there is no slave '{}'", name),
                                    "the slaves of <Network>");
             }
@@ -159,6 +159,10 @@ twin::TwinParams readTwin(ElementReader reader, const NetworkPart& network,
         if (!seen.insert(name).second) {
             deviceReader.error("slave", fmt::format("the slave '{}' is described twice", name),
                                "once");
+        }
+        SlavePart* const slave = network.find(name);
+        if (const auto type = deviceReader.text("device"); type && slave != nullptr) {
+            slave->twinDevice = selectDevice(*type, {}, deviceReader, network.catalogue);
         }
         readDevice(deviceReader, axisOf(name, axes), *found);
     }

@@ -90,10 +90,13 @@ bool belongsToMaster(std::uint16_t index) noexcept {
 }
 
 bool hasObject(const SlavePart& slave, std::uint16_t index, std::uint8_t subindex) {
-    return std::any_of(slave.params.startup.begin(), slave.params.startup.end(),
-                       [&](const StartupObject& object) {
-                           return object.index == index && object.subindex == subindex;
-                       });
+    const auto same = [&](const auto& object) {
+        return object.index == index && object.subindex == subindex;
+    };
+    const fieldbus::SlaveParams& params = slave.params;
+    return std::any_of(params.startup.begin(), params.startup.end(), same) ||
+           (params.listed &&
+            std::any_of(params.listed->objects.begin(), params.listed->objects.end(), same));
 }
 
 /// The range a value must be in: that of its type, narrowed by the dictionary.

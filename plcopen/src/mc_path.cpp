@@ -29,11 +29,11 @@ bool isAtStart(const GroupView& view, bool waits, const axis::GroupPoint& start)
 
 }  // namespace
 
-void MC_MovePath::operator()(GroupRef group, const MC_PATH_DATA_REF& PathData) noexcept {
+void MC_MovePath::operator()(GroupRef group, const MC_PATH_DATA_REF& path) noexcept {
     if (!Busy) ref_ = group;
     const CommandPhase phase =
-        runWith(group, [this, &PathData](GroupPort& port, CommandId previous) noexcept {
-            return submit(port, previous, PathData);
+        runWith(group, [this, &path](GroupPort& port, CommandId previous) noexcept {
+            return submit(port, previous, path);
         });
     Done = showMotion(phase) == CommandPhase::Done;
     // The last segment is followed; the path is under way from the first on.
@@ -70,7 +70,7 @@ core::Result<CommandId, ErrorId> MC_MovePath::submit(GroupPort& port, CommandId 
     return ids.value().last;
 }
 
-void TK_PlanPath::operator()(GroupRef group, MC_PATH_DATA_REF& PathData) noexcept {
+void TK_PlanPath::operator()(GroupRef group, MC_PATH_DATA_REF& path) noexcept {
     const bool edge = Execute && !lastExecute_;
     lastExecute_ = Execute;
     if (edge) {
@@ -80,7 +80,7 @@ void TK_PlanPath::operator()(GroupRef group, MC_PATH_DATA_REF& PathData) noexcep
         Done = false;
         fail(ErrorId::None);
     }
-    if (Busy) follow(PathData);
+    if (Busy) follow(path);
 }
 
 void TK_PlanPath::fail(ErrorId error) noexcept {

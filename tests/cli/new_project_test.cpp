@@ -76,6 +76,33 @@ TEST_F(NewProject, WorksForADriveThatNobodyKnows) {
     EXPECT_EQ(run.exitCode, 0) << run.output;
 }
 
+TEST_F(NewProject, TakesTheDevicesOfANetworkFile) {
+    const std::string eni = std::string{TAKT_SOURCE_DIR} + "/samples/06_eni/line.eni.xml";
+    const auto made = make("plant", {"--eni", eni});
+    ASSERT_EQ(made.exitCode, 0) << made.output;
+    EXPECT_THAT(made.output, HasSubstr("X (CD300E), Y (CD300E), Z (RA), A (Servo402)"));
+    const std::string machine = readFile(path("plant/machine.xml"));
+    EXPECT_THAT(machine, HasSubstr("<Network eni=\"line.eni.xml\">"));
+    EXPECT_THAT(machine, HasSubstr("<Drive slave=\"Drive 1 (CD300E)\""));
+    EXPECT_THAT(machine, HasSubstr("<Esi file=\"devices/cd300e.xml\"/>"));
+    EXPECT_THAT(machine, Not(HasSubstr("<Slave ")));
+    EXPECT_EQ(readFile(path("plant/line.eni.xml")), readFile(eni));
+    const auto run = runWithoutProgram("plant");
+    EXPECT_EQ(run.exitCode, 0) << run.output;
+}
+
+TEST_F(NewProject, SaysInWhichLineANetworkFileIsWrong) {
+    std::string eni = readFile(std::string{TAKT_SOURCE_DIR} + "/samples/06_eni/line.eni.xml");
+    const std::string counter = "<Cnt>12</Cnt>";
+    ASSERT_NE(eni.find(counter), std::string::npos);
+    eni.replace(eni.find(counter), counter.size(), "<Cnt>11</Cnt>");
+    writeFile(path("bad.eni.xml"), eni);
+    const auto made = make("plant", {"--eni", "bad.eni.xml"});
+    EXPECT_EQ(made.exitCode, 2);
+    EXPECT_THAT(made.output, HasSubstr("bad.eni.xml:1824: error: <Cnt> is 11"));
+    EXPECT_FALSE(std::filesystem::exists(path("plant")));
+}
+
 TEST_F(NewProject, LeavesAFolderAloneThatIsNotEmpty) {
     std::filesystem::create_directory(path("full"));
     writeFile(path("full/mine.txt"), "mine");
@@ -102,7 +129,7 @@ TEST_F(NewProject, WritesNothingWhenItIsRefused) {
 TEST_F(NewProject, SaysWhatIsAllowed) {
     EXPECT_THAT(make("none", {"--device", "XY9"}).output, HasSubstr("there are: CD300E"));
     EXPECT_THAT(make("none", {"--eni", "plant.xml"}).output,
-                HasSubstr("plant.xml: ENI files cannot be read yet; use"));
+                HasSubstr("there is no network file plant.xml"));
     EXPECT_THAT(make("none", {"--esi", "nowhere.xml"}).output,
                 HasSubstr("there is no device file nowhere.xml"));
 }

@@ -101,6 +101,16 @@ TEST_F(ObstacleRule, TakesALatency) {
     ASSERT_TRUE(given.machine.has_value()) << format(given.diagnostics);
     EXPECT_EQ(given.machine->obstacles[0].latencyCycles, 7U);
 }
+TEST_F(ObstacleRule, WarnsOfAKeepOutThatNobodyCanReach) {
+    const LoadResult result =
+        loadObstacles(inside("<Box name=\"a\"><Span axis=\"X\" from=\"409 mm\"/></Box>\n"
+                             "<Box name=\"b\"><Span axis=\"X\" from=\"407 mm\"/></Box>"));
+    ASSERT_TRUE(result.machine.has_value()) << format(result.diagnostics);
+    ASSERT_EQ(result.diagnostics.warningCount(), 1U) << format(result.diagnostics);
+    const Diagnostic warning = test::firstOf(result.diagnostics, Severity::Warning);
+    EXPECT_EQ(warning.place.line, changedLine_ + 1);
+    EXPECT_NE(warning.what.find("keep-out 'a'"), std::string::npos);
+}
 TEST_F(ObstacleRule, RefusesAnUnknownGroup) {
     expectRefused("<Obstacles group=\"H\"/>", "there is no group 'H'", "G");
 }

@@ -37,6 +37,14 @@ TEST(PdoLayout, FindsNothingInTheOtherDirectionOrSubindex) {
     EXPECT_FALSE(findEntry(oddDrive(), Direction::Outputs, 0x6040, 1).present());
 }
 
+TEST(PdoLayout, BeginsBehindTheBitsOfAnother) {
+    auto slave = oddDrive();
+    slave.outputShift = 3;
+    EXPECT_EQ(findEntry(slave, Direction::Outputs, 0x6060, 0).bitOffset, 19U);
+    EXPECT_EQ(findEntry(slave, Direction::Inputs, 0x6041, 0).bitOffset, 0U);
+    EXPECT_EQ(processDataBytes(slave, Direction::Outputs), 12U) << "the device knows no shift";
+}
+
 TEST(PdoLayout, NeverFindsAGap) {
     EXPECT_FALSE(findEntry(oddDrive(), Direction::Outputs, 0, 0).present());
 }

@@ -142,6 +142,20 @@ def esi_devices(path):
     return devices
 
 
+def eni_network(path):
+    """(cycle in seconds, type by slave name, slaves) of a network file."""
+    config = ElementTree.parse(path).getroot().find("Config")
+    cycle = float(whole(config.findtext("Cyclic/CycleTime"))) * 1e-6
+    types, slaves = {}, []
+    for element in config.iter("Slave"):
+        name = element.findtext("Info/Name").strip()
+        types[name] = name[name.rfind("(") + 1:].rstrip(")")
+        bits = {tag: whole(element.findtext(f"ProcessData/{tag}/BitLength", "0"))
+                for tag in ("Send", "Recv")}
+        slaves.append(Slave(name, bits["Send"] > 0, bits["Recv"] > 0))
+    return cycle, types, slaves
+
+
 class Machine:
     def __init__(self, path):
         path = pathlib.Path(path)
@@ -149,9 +163,12 @@ class Machine:
         network = root.find("Network")
         if network is None:
             raise MachineError(f"{path}: no <Network>")
-        self.cycle = float(seconds(network.get("cycle", "1 ms")))
         self.axes = {axis.get("name"): axis for axis in root.iter("Axis")}
         self.groups = {group.get("name"): group for group in root.iter("Group")}
+        if network.get("eni") is not None:
+            self.cycle, self.drive_types, self.slaves = eni_network(path.parent / network.get("eni"))
+            return
+        self.cycle = float(seconds(network.get("cycle", "1 ms")))
         devices = {}
         for esi in root.iter("Esi"):
             devices.update(esi_devices(path.parent / esi.get("file")))

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <new>
 #include <takt/planner/cyclic.hpp>
+#include <takt/planner/path_brake.hpp>
 #include <takt/planner/position_range.hpp>
 #include <takt/planner/tracker.hpp>
 #include <vector>
@@ -81,6 +82,32 @@ TEST(Allocation, HappensNeitherInPlanningNorInSampling) {
         Tracker tracker{r.limits, Seconds{0.01}};
         tracker.reset(r.from);
         static_cast<void>(tracker.step(r.target.state, states[0]));
+    }
+    EXPECT_EQ(allocations, before);
+}
+
+TEST(Allocation, HappensNeitherInFollowingAPathNorInBraking) {
+    const std::array<PathAxisLimits, 2> limits{
+        {{core::Velocity{100.0}, core::Acceleration{2000.0}, core::Jerk{50000.0}},
+         {core::Velocity{100.0}, core::Acceleration{2000.0}, core::Jerk{50000.0}}}};
+    const PathSpace space{2, 2};
+    PathPoint corner{};
+    corner[0] = core::Position{20.0};
+    PathPoint end = corner;
+    end[1] = core::Position{20.0};
+    std::vector<PathElement> elements{line(space, PathPoint{}, corner).value(),
+                                      line(space, corner, end).value()};
+    elements[0].transition = {TransitionMode::CornerDeviation, core::Distance{0.1}};
+    PathPlanner planner{space, limits, Seconds{0.001}};
+    PathMotion motion = planner.motion();
+    ASSERT_TRUE(planner.plan(elements, motion).ok());
+    std::array<PathAxisState, 2> states{};
+    const int before = allocations;
+    for (std::uint64_t k = 0; k <= motion.feed.cycles(); ++k) {
+        axesAt(motion.geometry, motion.feed.at(k), states);
+        PathBrake brake;
+        brake.start(motion, k, limits, {});
+        for (int n = 0; n < 5; ++n) static_cast<void>(brake.step());
     }
     EXPECT_EQ(allocations, before);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <string>
 #include <takt/record/motion_trace.hpp>
 #include <takt/record/svg_plot.hpp>
 
@@ -11,9 +12,10 @@ namespace {
 
 const std::vector<std::string> stateNames{"Disabled", "Standstill", "Homing", "DiscreteMotion"};
 
-/// X goes to and fro on a smooth path while Y follows half a period later.
-std::string drawn(int rows, std::string_view title = "gantry") {
-    const std::vector<MotionAxis> axes{{"X", "mm"}, {"Y", "mm"}};
+/// X goes to and fro on a smooth path while Y follows half a period later, and so on.
+std::string drawn(int rows, std::string_view title = "gantry", int axisCount = 2) {
+    std::vector<MotionAxis> axes{{"X", "mm"}, {"Y", "mm"}};
+    for (int a = 2; a < axisCount; ++a) axes.push_back({"A" + std::to_string(a), "mm"});
     const PlotSpec spec = motionPlot(title, "3 axes on the twin, 1 ms", axes);
     TraceRecorder trace{motionColumns(axes, stateNames), 16};
     PlotData data{trace.columns(), "t_ns", columnsOf(spec)};
@@ -22,7 +24,7 @@ std::string drawn(int rows, std::string_view title = "gantry") {
         TraceRow row = trace.row();
         putCycle(row, static_cast<core::CycleNumber>(k),
                  core::HostTime{std::chrono::milliseconds{k}});
-        for (int a = 0; a < 2; ++a) {
+        for (int a = 0; a < axisCount; ++a) {
             const double u = static_cast<double>((k + a * 400) % 1600) / 800.0 - 1.0;
             const double s = 1.0 - std::fabs(u);
             MotionSample sample;
@@ -52,6 +54,14 @@ TEST(SvgPlot, DrawsOneCurveForEachColumn) {
     EXPECT_EQ(occurrences(svg, "\" d=\"M"), 12U);  // position 4, velocity 4, acceleration 2, lag 2
     EXPECT_EQ(occurrences(svg, "DiscreteMotion</title>"), 2U);
     EXPECT_NE(svg.find("velocity  [mm/s]"), std::string::npos);
+}
+
+TEST(SvgPlot, NamesAsManyCurvesAsHaveRoomBesideTheirPanel) {
+    const std::string svg = drawn(2000, "line", 16);
+    // 32 curves of position and of velocity, 16 of acceleration and of lag; ten lines for each.
+    EXPECT_EQ(occurrences(svg, "class=\"key\" text-anchor=\"start\">and 23 more<"), 2U);
+    EXPECT_EQ(occurrences(svg, "class=\"key\" text-anchor=\"start\">and 7 more<"), 2U);
+    EXPECT_EQ(occurrences(drawn(2000), " more<"), 0U);
 }
 
 TEST(SvgPlot, IsTheSameTextForTheSameData) {

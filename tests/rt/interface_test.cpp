@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 
 #include "segment_test.hpp"
 
@@ -61,6 +62,37 @@ TEST_F(Interface, ScansListsRunsAndTakesAMachineDownAgain) {
     play("moves");
     expectTheDeviceListed();
     expectBothMovesDone();
+}
+
+/// The machine of the network file sample in a folder of its own, one text of the network file
+/// exchanged.
+std::string listedMachine(const std::string& folder, const std::string& from,
+                          const std::string& to) {
+    const std::string sample = Source + "/samples/06_eni/";
+    std::string machine = readFile(sample + "machine.xml");
+    std::string eni = readFile(sample + "line.eni.xml");
+    for (std::size_t at = 0; (at = machine.find("../devices/", at)) != std::string::npos;) {
+        machine.replace(at, 3, Source + "/samples/");
+    }
+    for (std::size_t at = 0; !from.empty() && (at = eni.find(from, at)) != std::string::npos;) {
+        eni.replace(at, from.size(), to);
+    }
+    std::filesystem::create_directories(folder);
+    writeFile(folder + "/machine.xml", machine);
+    writeFile(folder + "/line.eni.xml", eni);
+    return folder + "/machine.xml";
+}
+
+TEST_F(Interface, RefusesADeviceThatIsNotTheOneOfTheNetworkFile) {
+    const std::string there = listedMachine(folder_ + "/there", "", "");
+    // The revision of the two CD300E, which no init command checks.
+    const std::string wanted =
+        listedMachine(folder_ + "/wanted", "<RevisionNo>65538<", "<RevisionNo>65539<");
+    play("network_file", {there, wanted});
+    EXPECT_THAT(result_.output, HasSubstr("run exit 2"));
+    EXPECT_THAT(result_.output,
+                HasSubstr("line.eni.xml:103: slave 0 'Drive 1 (CD300E)': expected revision "
+                          "0x00010003, found 0x00010002; check the network file"));
 }
 
 TEST_F(Interface, DoesAllThisWithThreeCapabilities) {

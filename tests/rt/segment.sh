@@ -115,6 +115,12 @@ other_machine)
     run two_moves
     end_sim
     ;;
+network_file)
+    far_sim "$6"
+    LD_PRELOAD=${TAKT_TRAP:-} "$takt" run "$7" --interface bus0
+    echo "run exit $?"
+    end_sim
+    ;;
 long_line)
     machine=$6
     far_sim

@@ -36,7 +36,8 @@ struct NamedDevice {
 
 struct Project {
     std::string name;
-    std::string interface;  ///< on which the devices were found; empty: none
+    std::string interface;      ///< on which the devices were found; empty: none
+    std::filesystem::path eni;  ///< network file; empty: none
     std::vector<NamedDevice> devices;
     std::size_t axes{0};
 };
@@ -123,6 +124,7 @@ Project makeProject(const NewProjectOptions& options, std::vector<ProjectDevice>
     Project project;
     project.name = projectName(options.folder);
     project.interface = options.interface;
+    project.eni = options.eni;
     for (ProjectDevice& device : devices) {
         NamedDevice named{
             std::move(device), fmt::format("device{}", project.devices.size() + 1), {}};
@@ -132,6 +134,7 @@ Project makeProject(const NewProjectOptions& options, std::vector<ProjectDevice>
             for (char& c : named.slave)
                 c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         }
+        if (!named.source.slave.empty()) named.slave = named.source.slave;
         project.devices.push_back(std::move(named));
     }
     if (project.axes == 0)
@@ -147,7 +150,7 @@ std::string esiElements(const Project& project) {
     std::set<std::string> told;
     for (const NamedDevice& device : project.devices) {
         const std::string file = device.source.file.filename().string();
-        if (told.insert(file).second)
+        if (!file.empty() && told.insert(file).second)
             text += fmt::format("    <Esi file=\"devices/{}\"/>\n", escaped(file));
     }
     return text;
@@ -155,6 +158,7 @@ std::string esiElements(const Project& project) {
 
 std::string slaveElements(const Project& project) {
     std::string text;
+    if (!project.eni.empty()) return text;
     for (const NamedDevice& device : project.devices) {
         const wire::DeviceDescription& description = device.source.device;
         const std::string pdos =
@@ -177,7 +181,7 @@ std::string axisElement(const NamedDevice& device) {
     <Homing method="35"/>
   </Axis>
 )",
-                       device.axis, device.slave,
+                       device.axis, escaped(device.slave),
                        known ? ""
                              : "    <!-- countsPerTurn: position units of the drive for one motor "
                                "turn; see its manual. -->\n",
@@ -191,27 +195,35 @@ std::string twinElement(const NamedDevice& device) {
       </Mechanics>
     </Device>
 )",
-                       device.slave);
+                       escaped(device.slave));
 }
 
-std::string interfaceAttribute(const Project& project) {
-    if (project.interface.empty()) return {};
-    return fmt::format(" interface=\"{}\"", escaped(project.interface));
+/// The network's own cycle and slaves, or those of a network file.
+std::string networkAttributes(const Project& project) {
+    std::string text = project.eni.empty()
+                           ? std::string{"cycle=\"1 ms\""}
+                           : fmt::format("eni=\"{}\"", escaped(project.eni.filename().string()));
+    if (!project.interface.empty())
+        text += fmt::format(" interface=\"{}\"", escaped(project.interface));
+    return text;
 }
 
 std::string machineFile(const Project& project) {
-    std::string text = fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
+    std::string text = fmt::format(
+        R"(<?xml version="1.0" encoding="UTF-8"?>
 <!-- Every number carries its unit. `takt check machine.xml` says what is wrong with it, and where. -->
 <Machine name="{0}"
          xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"
          xsi:noNamespaceSchemaLocation="machine.xsd">
 
-  <!-- The devices in the order in which frames pass them. -->
-  <Network cycle="1 ms"{3}>
+  <!-- {4} -->
+  <Network {3}>
 {1}{2}  </Network>
 )",
-                                   project.name, esiElements(project), slaveElements(project),
-                                   interfaceAttribute(project));
+        project.name, esiElements(project), slaveElements(project), networkAttributes(project),
+        project.eni.empty() ? "The devices in the order in which frames pass them."
+                            : "Devices, cycle and process image are those of the network "
+                              "file.");
     text +=
         "\n  <!-- perTurn: travel of the load for one turn of the motor. Put your mechanics and "
         "limits here. -->";
@@ -258,9 +270,13 @@ Files makeFiles(const Project& project, const InstalledFiles& installed) {
                 {".gitignore", replaceAll(templates::GitIgnore, values)},
                 {"machine.xsd", readWhole(installed.schema)}};
     std::map<std::string, std::filesystem::path> copied;
+    if (!project.eni.empty()) {
+        files.emplace_back(project.eni.filename().string(), readWhole(project.eni));
+    }
     for (const NamedDevice& device : project.devices) {
         const std::filesystem::path& source = device.source.file;
         const std::string name = source.filename().string();
+        if (name.empty()) continue;
         const auto [place, fresh] = copied.try_emplace(name, source);
         if (fresh) files.emplace_back("devices/" + name, readWhole(source));
         if (!std::filesystem::equivalent(place->second, source)) {
@@ -297,6 +313,10 @@ void write(const std::filesystem::path& folder, const Files& files) {
 std::vector<ProjectDevice> pickDevices(const NewProjectOptions& options,
                                        const InstalledFiles& installed) {
     std::vector<std::filesystem::path> files = options.esi;
+    if (!options.eni.empty()) {
+        for (const auto& file : deviceFiles(installed)) files.push_back(file);
+        return devicesOfNetwork(options.eni, files);
+    }
     if (!options.interface.empty()) {
         for (const auto& file : deviceFiles(installed)) files.push_back(file);
         BusOptions network;
@@ -335,12 +355,6 @@ void tell(const NewProjectOptions& options, const Project& project, const Files&
 
 int newProject(const NewProjectOptions& options) {
     return runVerb("new", [&options] {
-        if (!options.eni.empty()) {
-            throw std::runtime_error{
-                fmt::format("{}: ENI files cannot be read yet; use the device files (ESI) of the "
-                            "same devices with --esi",
-                            options.eni.string())};
-        }
         refuseFolder(options.folder);
         const InstalledFiles installed = findInstalledFiles(options.executableFolder);
         const Project project = makeProject(options, pickDevices(options, installed));

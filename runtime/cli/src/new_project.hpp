@@ -13,7 +13,7 @@ struct NewProjectOptions {
     std::vector<std::filesystem::path>
         esi;                           ///< device files; empty: one CD300E from the installed ones
     std::vector<std::string> devices;  ///< types wanted from them; empty: the only one of each file
-    std::filesystem::path eni;         ///< refused in words
+    std::filesystem::path eni;         ///< network file that the devices are taken from
     std::string interface;             ///< take the devices that are on this network
     std::filesystem::path executableFolder;  ///< installed files are found from there
     bool json{false};

@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 #include <stdexcept>
+#include <takt/config/eni_reader.hpp>
 #include <takt/config/esi_reader.hpp>
 #include <takt/core/cia402.hpp>
 
@@ -124,6 +125,23 @@ std::string sideElement(const wire::DeviceDescription& device, const Side& side,
                     device.source, device.type)};
 }
 
+std::vector<ProjectDevice> readAll(const std::vector<std::filesystem::path>& files) {
+    std::vector<ProjectDevice> known;
+    for (const std::filesystem::path& file : files) {
+        for (auto& device : read(file)) known.push_back({std::move(device), file, {}});
+    }
+    return known;
+}
+
+const ProjectDevice* find(const std::vector<ProjectDevice>& known, const wire::Identity& wanted) {
+    const auto same = std::find_if(known.begin(), known.end(), [&](const ProjectDevice& entry) {
+        const wire::Identity& has = entry.device.identity;
+        return has.vendor == wanted.vendor && has.product == wanted.product &&
+               has.revision == wanted.revision;
+    });
+    return same == known.end() ? nullptr : &*same;
+}
+
 }  // namespace
 
 std::vector<ProjectDevice> chooseDevices(const std::vector<std::filesystem::path>& files,
@@ -136,7 +154,7 @@ std::vector<ProjectDevice> chooseDevices(const std::vector<std::filesystem::path
                 fmt::format("{} describes {} devices; name one with --device: {}", file.string(),
                             devices.size(), typesOf(devices))};
         }
-        for (const auto& device : devices) known.push_back({device, file});
+        for (const auto& device : devices) known.push_back({device, file, {}});
     }
     if (types.empty()) return known;
 
@@ -159,26 +177,44 @@ std::vector<ProjectDevice> chooseDevices(const std::vector<std::filesystem::path
 
 std::vector<ProjectDevice> findDevices(const std::vector<std::filesystem::path>& files,
                                        const std::vector<wire::Identity>& found) {
-    std::vector<ProjectDevice> known;
-    for (const std::filesystem::path& file : files) {
-        for (auto& device : read(file)) known.push_back({std::move(device), file});
-    }
+    const std::vector<ProjectDevice> known = readAll(files);
     std::vector<ProjectDevice> result;
     for (std::size_t position = 0; position < found.size(); ++position) {
         const wire::Identity& wanted = found[position];
-        const auto same =
-            std::find_if(known.begin(), known.end(), [&wanted](const ProjectDevice& entry) {
-                const wire::Identity& has = entry.device.identity;
-                return has.vendor == wanted.vendor && has.product == wanted.product &&
-                       has.revision == wanted.revision;
-            });
-        if (same == known.end()) {
+        const ProjectDevice* const same = find(known, wanted);
+        if (same == nullptr) {
             throw std::runtime_error{
                 fmt::format("device {} on the network has vendor 0x{:08X}, product 0x{:08X}, "
                             "revision 0x{:08X}, which is in no device file; add it with --esi",
                             position, wanted.vendor, wanted.product, wanted.revision)};
         }
         result.push_back(*same);
+    }
+    return result;
+}
+
+std::vector<ProjectDevice> devicesOfNetwork(const std::filesystem::path& eni,
+                                            const std::vector<std::filesystem::path>& files) {
+    if (!std::filesystem::is_regular_file(eni)) {
+        throw std::runtime_error{fmt::format("there is no network file {}", eni.string())};
+    }
+    config::Diagnostics diagnostics;
+    const auto network = config::readEni(eni, diagnostics);
+    for (const config::Diagnostic& item : diagnostics.items()) {
+        if (!network && item.severity == config::Severity::Error) {
+            throw std::runtime_error{config::format(item)};
+        }
+    }
+    const std::vector<ProjectDevice> known = readAll(files);
+    std::vector<ProjectDevice> result;
+    for (const config::EniSlave& slave : network->slaves) {
+        const ProjectDevice* const same = find(known, slave.device.identity);
+        ProjectDevice device{slave.device, {}, slave.name};
+        if (same != nullptr) {
+            device.device.type = same->device.type;
+            device.file = same->file;
+        }
+        result.push_back(std::move(device));
     }
     return result;
 }

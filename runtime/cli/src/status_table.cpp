@@ -30,6 +30,12 @@ std::string statusTable(const daemon::StatusReport& status) {
     if (!status.machineStop.empty())
         text += fmt::format("MACHINE STOP by {}\n", status.machineStop);
     if (!status.owner.empty()) text += fmt::format("operated by {}\n", status.owner);
+    if (status.bridgeStarts > 0) {
+        text += status.bridgeProcess != 0
+                    ? fmt::format("bridge process {}, {} samples published, started {} times\n",
+                                  status.bridgeProcess, status.bridgePublished, status.bridgeStarts)
+                    : fmt::format("bridge down, started {} times\n", status.bridgeStarts);
+    }
     std::size_t width = 4;
     for (const auto& axis : status.axes) width = std::max(width, axis.name.size());
     text += fmt::format("\n{:<{}}  {:<18} {:>13} {:>13} {:>12} {:>10}\n", "axis", width, "state",

@@ -82,31 +82,35 @@ void makeGroups(const config::MachineConfig& machine, Axes& axes, Groups& groups
         groups.emplace_back(params, all, machine.network.cycle);
 }
 
-axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave) {
+axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave,
+                               const axis::DriveBindings& bound) {
     using namespace core::cia402;  // NOLINT(google-build-using-namespace): a list of its names
-    const auto output = [&slave](std::uint16_t index) {
-        return fieldbus::findEntry(slave, fieldbus::Direction::Outputs, index, 0);
+    const auto output = [&slave](core::PdoSlot told, std::uint16_t index) {
+        return told.present() ? told
+                              : fieldbus::findEntry(slave, fieldbus::Direction::Outputs, index, 0);
     };
-    const auto input = [&slave](std::uint16_t index) {
-        return fieldbus::findEntry(slave, fieldbus::Direction::Inputs, index, 0);
+    const auto input = [&slave](core::PdoSlot told, std::uint16_t index) {
+        return told.present() ? told
+                              : fieldbus::findEntry(slave, fieldbus::Direction::Inputs, index, 0);
     };
-    return {.controlword = output(ControlWord),
-            .modeOfOperation = output(ModesOfOperation),
-            .targetPosition = output(TargetPosition),
-            .statusword = input(StatusWord),
-            .modeDisplay = input(ModesOfOperationDisplay),
-            .actualPosition = input(PositionActual),
-            .errorCode = input(ErrorCode),
-            .digitalInputs = input(DigitalInputs),
-            .followingError = input(FollowingErrorActual),
-            .actualTorque = input(TorqueActual)};
+    return {.controlword = output(bound.controlword, ControlWord),
+            .modeOfOperation = output(bound.modeOfOperation, ModesOfOperation),
+            .targetPosition = output(bound.targetPosition, TargetPosition),
+            .statusword = input(bound.statusword, StatusWord),
+            .modeDisplay = input(bound.modeDisplay, ModesOfOperationDisplay),
+            .actualPosition = input(bound.actualPosition, PositionActual),
+            .errorCode = input(bound.errorCode, ErrorCode),
+            .digitalInputs = input(bound.digitalInputs, DigitalInputs),
+            .followingError = input(bound.followingError, FollowingErrorActual),
+            .actualTorque = input(bound.actualTorque, TorqueActual)};
 }
 
 void attachAxes(const config::MachineConfig& machine, fieldbus::ethercat::Master& master,
                 Axes& axes) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
         const std::size_t slave = slaveIndex(machine.network, machine.axes[i].drive.slave);
-        axes[i].attach(master.image(slave), bindingsOf(machine.network.slaves[slave]),
+        axes[i].attach(master.image(slave),
+                       bindingsOf(machine.network.slaves[slave], machine.axes[i].drive.bound),
                        &master.objects(slave));
     }
 }

@@ -33,8 +33,10 @@ void makeAxes(const config::MachineConfig& machine, Axes& axes);
 /// Its groups of these axes, at the end of `groups`.
 void makeGroups(const config::MachineConfig& machine, Axes& axes, Groups& groups);
 
-/// Where each drive's objects lie in its device's process data.
-axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave);
+/// Where each drive's objects lie in its device's process data: where `bound` says it, else where
+/// they are mapped.
+axis::DriveBindings bindingsOf(const fieldbus::SlaveParams& slave,
+                               const axis::DriveBindings& bound);
 
 /// Binds each axis to the process data and objects of its drive.
 void attachAxes(const config::MachineConfig& machine, fieldbus::ethercat::Master& master,

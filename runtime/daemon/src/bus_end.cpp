@@ -4,8 +4,6 @@
 #include <takt/twin/twin.hpp>
 #include <vector>
 
-#include "twin_devices.hpp"
-
 namespace takt::daemon {
 
 namespace {
@@ -13,7 +11,7 @@ namespace {
 class SimulatedEnd final : public BusEnd {
 public:
     explicit SimulatedEnd(const config::MachineConfig& machine)
-        : twin_{machine.twin, twinDevices(machine), machine.network.cycle},
+        : twin_{machine.twin, machine.twinDevices, machine.network.cycle},
           lost_{machine.twin.faults.lostFrames} {}
 
     [[nodiscard]] wire::Link& link() noexcept override { return twin_.link(); }

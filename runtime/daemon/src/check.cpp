@@ -54,6 +54,16 @@ void printAxes(const config::MachineConfig& machine, Console& console) {
     }
 }
 
+void printBridge(const config::MachineConfig& machine, Console& console) {
+    const bridge::DdsParams& dds = machine.bridge.dds;
+    if (!dds.enabled) return;
+    const double period = std::chrono::duration<double>{machine.network.cycle}.count() *
+                          static_cast<double>(dds.everyCycles);
+    console.line(fmt::format("bridge: DDS domain {} on {}, status at {:g} Hz, commands {}",
+                             dds.domain, dds.interface, 1 / period,
+                             dds.commands ? "from every user of this computer" : "off"));
+}
+
 }  // namespace
 
 int check(const RunOptions& options) {
@@ -67,6 +77,7 @@ int check(const RunOptions& options) {
     if (!machine) return static_cast<int>(ExitCode::Refused);
     printNetwork(machine->config.network, console);
     printAxes(machine->config, console);
+    printBridge(machine->config, console);
     console.line(fmt::format("{}: good", machine->config.file));
     return 0;
 }

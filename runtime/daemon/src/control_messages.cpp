@@ -114,6 +114,9 @@ Json jsonOf(const StatusReport& status) {
               {"workingCounterErrors", status.workingCounterErrors},
               {"machineStop", status.machineStop},
               {"owner", status.owner},
+              {"bridgeProcess", status.bridgeProcess},
+              {"bridgeStarts", status.bridgeStarts},
+              {"bridgePublished", status.bridgePublished},
               {"axes", Json::array()},
               {"groups", Json::array()},
               {"programs", Json::array()}};
@@ -139,6 +142,9 @@ StatusReport statusOf(const Json& json, std::string& error) {
     members.take("workingCounterErrors", status.workingCounterErrors);
     members.take("machineStop", status.machineStop);
     members.take("owner", status.owner);
+    members.take("bridgeProcess", status.bridgeProcess);
+    members.take("bridgeStarts", status.bridgeStarts);
+    members.take("bridgePublished", status.bridgePublished);
     if (const Json* axes = members.array("axes")) {
         for (const Json& axis : *axes) status.axes.push_back(axisOf(axis, error));
     }

@@ -71,7 +71,12 @@ StatusReport ControlServer::report() const {
     if (run.stop.cause != StopCause::None) {
         report.machineStop = describe(run.stop, names.stopInputs, names.programs, names.axes);
     }
-    report.owner = ownerName();
+    report.owner = gate_.ownerName();
+    if (parts_.bridge != nullptr) {
+        report.bridgeProcess = parts_.bridge->process().pid();
+        report.bridgeStarts = parts_.bridge->process().starts();
+        report.bridgePublished = parts_.bridge->published();
+    }
     for (std::size_t i = 0; i < board.axes.size(); ++i) {
         report.axes.push_back(reportOf(board.axes[i].read(), names, i));
     }
@@ -104,13 +109,6 @@ std::vector<EventReport> ControlServer::eventsAfter(std::uint64_t number) const 
 double ControlServer::secondsOf(core::CycleNumber cycle) const {
     return static_cast<double>(cycle) *
            std::chrono::duration<double>{parts_.machine.network.cycle}.count();
-}
-
-std::string ControlServer::ownerName() const {
-    const auto owner = clients_.find(owner_);
-    if (owner == clients_.end()) return {};
-    const std::string& who = owner->second.who;
-    return fmt::format("{} (process {})", who.empty() ? "a client" : who, owner->second.pid);
 }
 
 }  // namespace takt::daemon

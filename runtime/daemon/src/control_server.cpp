@@ -5,15 +5,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <takt/wire/al_state.hpp>
 #include <utility>
 
 #include "command_file.hpp"
-#include "object_text.hpp"
 #include "realtime_thread.hpp"
 
 namespace takt::daemon {
@@ -24,11 +21,6 @@ using namespace std::chrono_literals;
 
 /// The cycle cannot wake this thread without a system call, so it looks for answers by itself.
 constexpr std::chrono::milliseconds LookAfter = 5ms;
-
-ReplyKind kindOf(AnswerKind kind) noexcept {
-    return static_cast<ReplyKind>(kind);
-}
-static_assert(static_cast<int>(ReplyKind::Failed) == static_cast<int>(AnswerKind::Failed));
 
 /// Signals are for the thread that runs the machine.
 void blockSignals() {
@@ -41,7 +33,7 @@ void blockSignals() {
 
 ControlServer::ControlServer(const Parts& parts, const std::filesystem::path& socket,
                              const std::filesystem::path& commandFile)
-    : parts_{parts}, socket_{socket, parts.machine.name} {
+    : parts_{parts}, socket_{socket, parts.machine.name}, gate_{parts.control, parts.stock} {
     if (!commandFile.empty()) commandFile_ = std::make_unique<record::OutputFile>(commandFile);
     // The thread inherits the mask: no signal can reach it before it has set its own.
     sigset_t all;
@@ -69,27 +61,28 @@ void ControlServer::serve() {
     blockSignals();
     while (!ending_) {
         waitForClients();
-        takePrepared();
         takeAnswers();
         answerInquiries();
         parts_.stock.clear();
         takeEvents();
         takeCommands();
-        watchOwner();
+        serveBridge();
+        gate_.watchOwner();
         sendAll();
         dropGone();
     }
-    if (preparation_) preparation_->thread.join();
+    gate_.finish();
     takeAnswers();
     takeEvents();
     sendAll();
+    if (parts_.bridge != nullptr) parts_.bridge->close();
     for (auto& [number, client] : clients_) ::close(client.connection);
     clients_.clear();
 }
 
 void ControlServer::waitForClients() {
     std::vector<pollfd> waits{{socket_.descriptor(), POLLIN, 0}};
-    std::vector<std::uint64_t> numbers;
+    std::vector<CommandGate::Client> numbers;
     for (const auto& [number, client] : clients_) {
         const auto wanted = static_cast<short>(client.unsent.empty() ? POLLIN : POLLIN | POLLOUT);
         waits.push_back({client.connection, wanted, 0});
@@ -122,10 +115,10 @@ void ControlServer::acceptClients() {
     Client client;
     client.connection = connection;
     client.pid = peer.pid;
-    clients_.emplace(++lastClient_, std::move(client));
+    clients_.emplace(gate_.newClient(), std::move(client));
 }
 
-void ControlServer::receive(std::uint64_t number, Client& client) {
+void ControlServer::receive(CommandGate::Client number, Client& client) {
     std::array<char, 4096> buffer{};
     const ssize_t count = ::recv(client.connection, buffer.data(), buffer.size(), 0);
     if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) client.gone = true;
@@ -144,7 +137,7 @@ void ControlServer::receive(std::uint64_t number, Client& client) {
     }
 }
 
-void ControlServer::handle(std::uint64_t number, Client& client, std::string_view line) {
+void ControlServer::handle(CommandGate::Client number, Client& client, std::string_view line) {
     std::string error;
     const auto request = parseRequest(line, error);
     if (!request) return refuse(client, {}, std::move(error));
@@ -175,7 +168,16 @@ void ControlServer::refuse(Client& client, const ControlRequest& request, std::s
         encode(ControlReply{.id = request.id, .kind = ReplyKind::Refused, .error = std::move(why)});
 }
 
-void ControlServer::inquire(std::uint64_t number, Client& client, const ControlRequest& request) {
+void ControlServer::order(CommandGate::Client number, Client& client,
+                          const ControlRequest& request) {
+    const std::string name =
+        fmt::format("{} (process {})", client.who.empty() ? "a client" : client.who, client.pid);
+    if (std::string why = gate_.submit(number, name, request); !why.empty())
+        refuse(client, request, std::move(why));
+}
+
+void ControlServer::inquire(CommandGate::Client number, Client& client,
+                            const ControlRequest& request) {
     const RunPhase phase = parts_.control.board().run.read().phase;
     if (phase == RunPhase::BringUp || phase == RunPhase::Over)
         return refuse(client, request, "no cycle runs: the network is brought up, or the run ends");
@@ -196,40 +198,34 @@ void ControlServer::answerInquiries() {
 }
 
 void ControlServer::takeAnswers() {
-    ControlAnswer answer;
-    while (parts_.control.rings().answers.pop(answer)) {
-        const auto found = tickets_.find(answer.ticket);
-        if (found == tickets_.end()) continue;
-        const Ticket ticket = found->second;
-        if (answer.kind != AnswerKind::Accepted) tickets_.erase(found);
-        const auto client = clients_.find(ticket.client);
-        if (client == clients_.end()) continue;
-        ControlReply reply{
-            .id = ticket.request, .kind = kindOf(answer.kind), .error = {}, .cycle = answer.cycle};
-        reply.data = formatBytes(answer.value);
-        reply.abortCode = answer.abortCode;
-        if (answer.abortCode != 0) {
-            reply.error =
-                fmt::format("0x{:08X} {}", answer.abortCode, wire::explainAbort(answer.abortCode));
+    while (const auto answer = gate_.nextAnswer()) {
+        if (parts_.bridge != nullptr && parts_.bridge->answer(answer->client, answer->reply)) {
+            continue;
         }
-        if (answer.error != axis::ErrorId::None) {
-            const axis::ErrorInfo& info = axis::errorInfo(answer.error);
-            reply.error = fmt::format("{}: {} {}", info.name, info.text, info.remedy);
-        } else if (answer.refusal != Refusal::None) {
-            reply.error = explain(answer.refusal, ticket.order, ticket.target, answer.detail,
-                                  parts_.control.names());
-        }
-        client->second.unsent += encode(reply);
+        const auto client = clients_.find(answer->client);
+        if (client != clients_.end()) client->second.unsent += encode(answer->reply);
     }
 }
 
 void ControlServer::takeEvents() {
     record::Event event;
     while (parts_.control.rings().events.next(event)) {
-        events_.push_back({++lastEvent_, event.cycle, secondsOf(event.cycle),
-                           text(event, parts_.control.names())});
-        if (events_.size() > KeptEvents) events_.pop_front();
+        keep(event.cycle, text(event, parts_.control.names()));
     }
+}
+
+/// One more event, for all doors.
+void ControlServer::keep(core::CycleNumber cycle, std::string text) {
+    events_.push_back({++lastEvent_, cycle, secondsOf(cycle), std::move(text)});
+    if (events_.size() > KeptEvents) events_.pop_front();
+    if (parts_.bridge != nullptr) parts_.bridge->tell(events_.back());
+}
+
+void ControlServer::serveBridge() {
+    if (parts_.bridge == nullptr) return;
+    const core::CycleNumber cycle = parts_.control.board().run.read().cycle;
+    std::string change = parts_.bridge->serve(gate_, cycle);
+    if (!change.empty()) keep(cycle, std::move(change));
 }
 
 void ControlServer::takeCommands() {
@@ -237,24 +233,6 @@ void ControlServer::takeCommands() {
     while (parts_.control.rings().taken.pop(taken)) {
         if (commandFile_) commandFile_->write(formatCommand(taken, parts_.control.names()));
     }
-}
-
-void ControlServer::watchOwner() {
-    if (owner_ != 0) {
-        const auto client = clients_.find(owner_);
-        const bool waits = std::any_of(tickets_.begin(), tickets_.end(), [this](const auto& entry) {
-            return entry.second.client == owner_;
-        });
-        const bool silent = std::chrono::steady_clock::now() - ownerSeen_ > OwnerTime;
-        if (client == clients_.end() || client->second.gone || (silent && !waits)) leave();
-    }
-    if (!leavePending_) return;
-    leavePending_ = !parts_.control.rings().commands.push({.order = Order::Leave});
-}
-
-void ControlServer::leave() {
-    owner_ = 0;
-    leavePending_ = !parts_.control.rings().commands.push({.order = Order::Leave});
 }
 
 void ControlServer::sendAll() {
@@ -274,7 +252,7 @@ void ControlServer::dropGone() {
             ++client;
             continue;
         }
-        if (client->first == owner_) leave();
+        gate_.leave(client->first);
         ::close(client->second.connection);
         client = clients_.erase(client);
     }

@@ -14,20 +14,18 @@
 #include <thread>
 #include <vector>
 
+#include "bridge_door.hpp"
+#include "command_gate.hpp"
 #include "machine_control.hpp"
 #include "rate_limit.hpp"
 
 namespace takt::daemon {
 
 /// Serves the control socket on a thread of its own: status and events for everybody who may
-/// connect, commands for one owner at a time. It reaches the cycle through rings and sequence locks
-/// only.
-///
-/// Owner is who commands first, until he leaves or is silent for OwnerTime. Stopping is open to
-/// all.
+/// connect, commands through the gate. The bridge, where there is one, is served by the same
+/// thread. It reaches the cycle through rings and sequence locks only.
 class ControlServer {
 public:
-    static constexpr std::chrono::seconds OwnerTime{1};
     static constexpr std::size_t MostClients = 16;
     static constexpr std::size_t MostLine = 4096;  ///< of a request
     static constexpr std::size_t MostUnsent =
@@ -40,6 +38,7 @@ public:
         const config::MachineConfig& machine;
         ProgramStock& stock;
         MachineControl& control;
+        BridgeDoor* bridge;  ///< null: none
     };
     /// Opens the socket and begins to serve. \param commandFile taken commands are written there;
     /// empty: nowhere. \throw std::runtime_error naming what cannot be opened
@@ -64,68 +63,39 @@ private:
         bool gone{false};
         RateLimit rate{MostRequestsPerSecond, std::chrono::steady_clock::now()};
     };
-    struct Ticket {
-        std::uint64_t client{0};
-        std::uint64_t request{0};
-        Order order{};
-        std::uint16_t target{0};
-    };
     /// Who waits for a diagnosis to be shown.
     struct Inquiry {
-        std::uint64_t client{0};
+        CommandGate::Client client{CommandGate::Nobody};
         std::uint64_t request{0};
         std::uint32_t number{0};
     };
-    /// A fresh program that a thread of its own makes ready: its start may take its time.
-    struct Preparation {
-        ControlCommand command{};
-        std::thread thread;
-        std::vector<std::string> problems;
-        std::atomic<bool> over{false};
-    };
-    using Time = std::chrono::steady_clock::time_point;
-
     void serve();
     void waitForClients();
     void acceptClients();
-    void receive(std::uint64_t number, Client& client);
-    void handle(std::uint64_t number, Client& client, std::string_view line);
-    void order(std::uint64_t number, Client& client, const ControlRequest& request);
-    [[nodiscard]] std::string commandOf(const ControlRequest& request,
-                                        ControlCommand& command) const;
-    [[nodiscard]] std::string targetOf(const ControlRequest& request,
-                                       ControlCommand& command) const;
-    [[nodiscard]] std::string claim(std::uint64_t number, const Client& client);
+    void receive(CommandGate::Client number, Client& client);
+    void handle(CommandGate::Client number, Client& client, std::string_view line);
+    void order(CommandGate::Client number, Client& client, const ControlRequest& request);
     void refuse(Client& client, const ControlRequest& request, std::string why);
-    void prepareProgram(const ControlCommand& command);
-    void takePrepared();
-    void inquire(std::uint64_t number, Client& client, const ControlRequest& request);
+    void inquire(CommandGate::Client number, Client& client, const ControlRequest& request);
     void answerInquiries();
     void takeAnswers();
     void takeEvents();
     void takeCommands();
-    void watchOwner();
+    void serveBridge();
     void sendAll();
     void dropGone();
-    void leave();
+    void keep(core::CycleNumber cycle, std::string text);
     [[nodiscard]] StatusReport report() const;
     [[nodiscard]] NetworkReport networkReport() const;
     [[nodiscard]] std::vector<EventReport> eventsAfter(std::uint64_t number) const;
     [[nodiscard]] double secondsOf(core::CycleNumber cycle) const;
-    [[nodiscard]] std::string ownerName() const;
 
     Parts parts_;
     ControlSocket socket_;
     std::unique_ptr<record::OutputFile> commandFile_;
-    std::map<std::uint64_t, Client> clients_;
-    std::uint64_t lastClient_{0};
-    std::map<std::uint64_t, Ticket> tickets_;
+    CommandGate gate_;
+    std::map<CommandGate::Client, Client> clients_;
     std::vector<Inquiry> inquiries_;
-    std::unique_ptr<Preparation> preparation_;
-    std::uint64_t lastTicket_{0};
-    std::uint64_t owner_{0};  ///< 0 = nobody
-    Time ownerSeen_{};
-    bool leavePending_{false};
     std::deque<EventReport> events_;
     std::uint64_t lastEvent_{0};
     std::uint64_t commandsLost_{0};

@@ -4,6 +4,8 @@
 #include <takt/fieldbus/pdo_layout.hpp>
 #include <utility>
 
+#include "bridge_samples.hpp"
+
 namespace takt::daemon {
 
 namespace {
@@ -126,8 +128,10 @@ void MachineControl::publish(core::CycleNumber cycle, const CycleOrders& orders)
 }
 
 void MachineControl::publishStatus(core::CycleNumber cycle, const CycleOrders& orders) noexcept {
-    board_.run.write(
-        {cycle, orders.phase, parts_.master.state(), stop_.record(), parts_.master.counters()});
+    const RunEntry run{cycle, orders.phase, parts_.master.state(), stop_.record(),
+                       parts_.master.counters()};
+    board_.run.write(run);
+    publishToBridge(run);
     for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
         const axis::Axis& axis = parts_.axes[i];
         board_.axes[i].write({axis.status(), axis.error(),
@@ -148,6 +152,17 @@ void MachineControl::publishStatus(core::CycleNumber cycle, const CycleOrders& o
         for (std::size_t w = 0; w < count; ++w) entry.watches[w] = watched[w].number();
         board_.programs[i].write(entry);
     }
+}
+
+void MachineControl::publishToBridge(const RunEntry& run) noexcept {
+    if (parts_.bridge == nullptr || !parts_.bridge->due(run.cycle)) return;
+    for (std::size_t i = 0; i < parts_.axes.size(); ++i) {
+        parts_.bridge->axis(i, sampleOf(run.cycle, parts_.axes[i].status()));
+    }
+    for (std::size_t i = 0; i < parts_.groups.size(); ++i) {
+        parts_.bridge->group(i, sampleOf(run.cycle, parts_.groups[i].status()));
+    }
+    parts_.bridge->machine(sampleOf(run));
 }
 
 void MachineControl::noteChanges(core::CycleNumber cycle) noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <takt/bridge/status_memory.hpp>
 #include <takt/config/machine_config.hpp>
 #include <takt/fieldbus/ethercat/master.hpp>
 #include <vector>
@@ -36,6 +37,7 @@ public:
         Groups& groups;
         std::span<ProgramHost> programs;
         ProgramStock& stock;
+        bridge::StatusWriter* bridge;  ///< null: none
     };
     /// \param replay commands of a file, in the order of their cycles
     /// \param record what is taken goes into the ring for the command file
@@ -69,6 +71,7 @@ private:
     void takeWishes(core::CycleNumber cycle) noexcept;
     void watchFaults(core::CycleNumber cycle) noexcept;
     void publishStatus(core::CycleNumber cycle, const CycleOrders& orders) noexcept;
+    void publishToBridge(const RunEntry& run) noexcept;
     void noteChanges(core::CycleNumber cycle) noexcept;
     void noteMovers(core::CycleNumber cycle) noexcept;
 

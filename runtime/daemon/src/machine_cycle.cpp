@@ -31,12 +31,13 @@ void MachineCycle::run(const scheduler::Beat& beat, const CycleOrders& orders) n
 
 /// Lost set-points are those of the cycles that were missed, so they come before this one's inputs.
 void MachineCycle::passOver(const scheduler::Beat& beat) noexcept {
+    const Movers& movers = parts_.movers;
     for (std::uint32_t i = beat.madeUpFor; i > 0; --i) {
-        for (axis::Group& group : parts_.movers.groups) group.missCycle();
-        for (axis::Axis& axis : parts_.movers.axes) axis.missCycle();
-        parts_.recorders.row(beat.number - i, parts_.movers);
+        for (axis::Group& group : movers.groups) group.missCycle();
+        for (axis::Axis& axis : movers.axes) axis.missCycle();
+        parts_.recorders.row(beat.number - i, movers);
     }
-    for (axis::Axis& axis : parts_.movers.axes) axis.standFor(beat.skipped - beat.madeUpFor);
+    for (axis::Axis& axis : movers.axes) axis.standFor(beat.skipped - beat.madeUpFor);
 }
 
 void MachineCycle::followReferenceClock(const scheduler::Beat& beat) noexcept {

@@ -30,6 +30,13 @@ std::unique_ptr<BusEnd> endFor(const RunOptions& options, const config::MachineC
     return interfaceEnd(options.interface, fieldbus::computeTiming(machine.network).frames + 1);
 }
 
+/// A run with --fast leaves every subscriber behind, so it has no bridge.
+std::unique_ptr<BridgeDoor> bridgeFor(const RunOptions& options,
+                                      const config::MachineConfig& machine) {
+    if (options.fast || !machine.bridge.dds.enabled) return nullptr;
+    return std::make_unique<BridgeDoor>(machine);
+}
+
 /// A real computer sends a little later or earlier each time; a lock that waits for the precision
 /// of a simulated one would never be found. SYNC0 comes a quarter of the cycle after the frame, at
 /// least.
@@ -82,10 +89,12 @@ MachineRun::MachineRun(const RunOptions& options, LoadedMachine& machine, Record
       grid_{core::HostTime{}, machine_.network.cycle},
       overruns_{machine_.scheduler.overruns},
       stock_{programs_, machine.factories, machine_},
-      control_{{machine_, bus_.master(), axes_, groups_, programs_, stock_},
+      bridge_{bridgeFor(options, machine_)},
+      control_{{machine_, bus_.master(), axes_, groups_, programs_, stock_,
+                bridge_ ? &bridge_->status() : nullptr},
                machine.commands,
                !options.recordCommands.empty()},
-      server_{{machine_, stock_, control_}, options.socket, options.recordCommands},
+      server_{{machine_, stock_, control_, bridge_.get()}, options.socket, options.recordCommands},
       cycle_{{bus_.master(),
               {axes_, groups_},
               programs_,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "assembly.hpp"
+#include "bridge_door.hpp"
 #include "bus.hpp"
 #include "console.hpp"
 #include "control_server.hpp"
@@ -57,15 +58,15 @@ private:
     void runOnThreads();
     void keepHouse(bool cycleRests);
     void conclude();
-    void planPaths();
     [[nodiscard]] NetworkReport networkReport();
+    void planPaths();
     [[noreturn]] void leaveHangingProgram(std::size_t program, core::CycleNumber cycle);
 
     // rt, after each cycle.
     void oneCycle() noexcept;
     void supervise() noexcept;
-    void doJobs() noexcept;
     [[nodiscard]] DiagnosisEntry diagnosis() const noexcept;
+    void doJobs() noexcept;
     void superviseOverruns(const scheduler::Beat& beat) noexcept;
     void superviseGoingOp() noexcept;
     void superviseOperating() noexcept;
@@ -97,6 +98,7 @@ private:
     scheduler::Grid grid_;
     scheduler::OverrunGuard overruns_;
     ProgramStock stock_;
+    std::unique_ptr<BridgeDoor> bridge_;  ///< null: the machine file asks for none
     MachineControl control_;
     ControlServer server_;
     MachineCycle cycle_;

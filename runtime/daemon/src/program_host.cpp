@@ -23,6 +23,12 @@ ProgramPhase phaseAfter(CallAnswer answer) noexcept {
     return ProgramPhase::Failed;
 }
 
+RouteDesks desks(std::size_t count) {
+    RouteDesks all(count);
+    for (auto& desk : all) desk = std::make_shared<axis::RouteDesk>();
+    return all;
+}
+
 template <typename Params>
 std::string namesOf(const std::vector<Params>& all) {
     std::string names;
@@ -35,9 +41,18 @@ std::string namesOf(const std::vector<Params>& all) {
 ProgramHost::ProgramHost(program::ProgramParams params, program::ProgramPtr program,
                          std::size_t axisCount, std::size_t groupCount, std::uint16_t number)
     : params_{std::move(params)},
-      work_{std::make_unique<ProgramWork>(std::move(program), axisCount, groupCount, number)},
+      routes_{desks(groupCount)},
+      work_{std::make_unique<ProgramWork>(std::move(program), axisCount, routes_, number)},
       commanded_(axisCount, false),
       groupCommanded_(groupCount, false) {}
+
+ProgramHost::ProgramHost(const ProgramHost& first, program::ProgramPtr program,
+                         std::size_t axisCount, std::uint16_t number)
+    : params_{first.params_},
+      routes_{first.routes_},
+      work_{std::make_unique<ProgramWork>(std::move(program), axisCount, routes_, number)},
+      commanded_(axisCount, false),
+      groupCommanded_(routes_.size(), false) {}
 
 ProgramHost::~ProgramHost() {
     // A call that is still out works on it, until the process ends.

@@ -31,6 +31,9 @@ public:
     /// \param number tells programs apart on their axes, from 1
     ProgramHost(program::ProgramParams params, program::ProgramPtr program, std::size_t axisCount,
                 std::size_t groupCount, std::uint16_t number);
+    /// Another instance of a program: it asks for ways at the same desks as `first`.
+    ProgramHost(const ProgramHost& first, program::ProgramPtr program, std::size_t axisCount,
+                std::uint16_t number);
     ProgramHost(ProgramHost&&) = default;
     ~ProgramHost();
 
@@ -60,10 +63,9 @@ public:
     /// rt. The program has asked for this axis or a group of it; while it runs nobody else moves
     /// it.
     [[nodiscard]] bool uses(std::size_t axis) const noexcept { return work_->machine().uses(axis); }
-    /// Where the program asks for ways of a group around its keep-outs.
-    [[nodiscard]] axis::RouteDesk& routes(std::size_t group) noexcept {
-        return work_->groupArea(group).routes();
-    }
+    /// Where the program asks for ways of each group around its keep-outs. All its instances share
+    /// them.
+    [[nodiscard]] const RouteDesks& routes() const noexcept { return routes_; }
     /// rt. The machine as the program sees it: to tell it of a machine stop and to hear it ask for
     /// one. \pre atRest()
     [[nodiscard]] program::Machine& machine() noexcept { return work_->machine(); }
@@ -97,6 +99,7 @@ private:
                                       std::string_view known) const;
 
     program::ProgramParams params_;
+    RouteDesks routes_;  ///< for each group
     std::unique_ptr<ProgramWork> work_;
     std::unique_ptr<ProgramCaller> caller_;
     std::vector<bool> commanded_;       ///< for each axis: the program has commanded it

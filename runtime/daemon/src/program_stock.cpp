@@ -55,9 +55,9 @@ std::vector<std::string> ProgramStock::prepare(std::size_t program) {
         }
         // Another number than all before it: an outcome of an old instance's command is not its.
         const std::size_t number = 1 + (program + programs_.size() * instance) % PortNumbers;
-        auto host = std::make_unique<ProgramHost>(
-            programs_[program].params(), std::move(loaded.program), machine_.axes.size(),
-            machine_.groups.size(), static_cast<std::uint16_t>(number));
+        auto host =
+            std::make_unique<ProgramHost>(programs_[program], std::move(loaded.program),
+                                          machine_.axes.size(), static_cast<std::uint16_t>(number));
         host->setInstance(instance);
         if (auto problems = host->start(machine_); !problems.empty()) return problems;
         {

@@ -7,14 +7,14 @@
 
 namespace takt::daemon {
 
-ProgramWork::ProgramWork(program::ProgramPtr program, std::size_t axisCount, std::size_t groupCount,
-                         std::uint16_t number)
+ProgramWork::ProgramWork(program::ProgramPtr program, std::size_t axisCount,
+                         const RouteDesks& routes, std::uint16_t number)
     : program_{std::move(program)} {
     for (std::size_t i = 0; i < axisCount; ++i) {
         areas_.push_back(std::make_unique<axis::AxisPort>(number));
     }
-    for (std::size_t i = 0; i < groupCount; ++i) {
-        groupAreas_.push_back(std::make_unique<axis::GroupPort>(number));
+    for (const auto& desk : routes) {
+        groupAreas_.push_back(std::make_unique<axis::GroupPort>(number, desk));
     }
 }
 

@@ -11,6 +11,9 @@
 
 namespace takt::daemon {
 
+/// Where a program asks for ways around keep-outs, one for each group of the machine.
+using RouteDesks = std::vector<std::shared_ptr<axis::RouteDesk>>;
+
 /// What became of one call of a program.
 enum class CallAnswer : std::uint8_t { Running, Finished, Failed, Threw };
 
@@ -18,7 +21,7 @@ enum class CallAnswer : std::uint8_t { Running, Finished, Failed, Threw };
 /// a program that never comes back it is given up as a whole.
 class ProgramWork {
 public:
-    ProgramWork(program::ProgramPtr program, std::size_t axisCount, std::size_t groupCount,
+    ProgramWork(program::ProgramPtr program, std::size_t axisCount, const RouteDesks& routes,
                 std::uint16_t number);
 
     [[nodiscard]] program::Program& program() noexcept { return *program_; }

@@ -65,7 +65,7 @@ RouteOffice::RouteOffice(const config::MachineConfig& machine, const Axes& axes,
     : cycle_{std::chrono::duration<double>(machine.network.cycle).count()} {
     for (const roadmap::ObstacleParams& params : machine.obstacles) {
         for (ProgramHost& program : programs) {
-            RouteDesk& desk = program.routes(params.group);
+            RouteDesk& desk = *program.routes()[params.group];
             desk.serve(params.latencyCycles);
             posts_.push_back({&desk, grounds_.size()});
         }

@@ -2,8 +2,6 @@
 
 #include <span>
 
-#include "twin_devices.hpp"
-
 namespace takt::daemon {
 
 namespace {
@@ -21,7 +19,7 @@ bool differ(const twin::DeviceProbe& a, const twin::DeviceProbe& b) noexcept {
 }  // namespace
 
 SimServer::SimServer(const config::MachineConfig& machine, const std::string& interface)
-    : twin_{machine.twin, twinDevices(machine), machine.network.cycle},
+    : twin_{machine.twin, machine.twinDevices, machine.network.cycle},
       link_{interface, Batch},
       origin_{clock_.now()},
       incoming_(Batch),

@@ -90,7 +90,10 @@ void AlWalker::takeStatus(core::HostTime now) noexcept {
     if (phase_ == Phase::AwaitAcknowledge) {
         // A device without a processor of its own mirrors the acknowledge bit and has no code.
         if (!seen_.error || seen_.code == 0) {
+            // The acknowledgement names the state it is in: there is nothing left to ask for.
+            const bool there = seen_.state == target_ && !seen_.error;
             phase_ = Phase::Ask;
+            if (there) result_ = Result::Reached;
             return;
         }
     } else if (seen_.error) {

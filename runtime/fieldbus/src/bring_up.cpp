@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <takt/wire/al_state.hpp>
 #include <takt/wire/byte_io.hpp>
 #include <takt/wire/device_description.hpp>
@@ -66,19 +65,28 @@ void BringUp::blameNetwork(std::string text) {
 }
 
 void BringUp::blame(std::size_t slave, std::string_view text) {
-    const SlaveParams& params = parts_.network.slaves[slave];
-    problems_.push_back({params.name,
-                         fmt::format("{}: {}", slaveLabel(parts_.network, slave), text),
-                         params.origin});
+    blame(slave, text, parts_.network.slaves[slave].origin);
+}
+
+void BringUp::blame(std::size_t slave, std::string_view text, const std::string& origin) {
+    problems_.push_back({parts_.network.slaves[slave].name,
+                         fmt::format("{}: {}", slaveLabel(parts_.network, slave), text), origin});
 }
 
 std::vector<BringUpProblem> BringUp::run() {
     using Stage = void (BringUp::*)();
-    constexpr std::array<Stage, 9> stages{
-        &BringUp::checkParams, &BringUp::countDevices,   &BringUp::resetDevices,
-        &BringUp::scan,        &BringUp::compareDevices, &BringUp::measureClocks,
-        &BringUp::configure,   &BringUp::settleClocks,   &BringUp::armSync};
-    for (const Stage stage : stages) {
+    constexpr std::array<Stage, 10> worked{&BringUp::checkParams,    &BringUp::countDevices,
+                                           &BringUp::resetDevices,   &BringUp::scan,
+                                           &BringUp::compareDevices, &BringUp::measureClocks,
+                                           &BringUp::configure,      &BringUp::writeObjects,
+                                           &BringUp::settleClocks,   &BringUp::armSync};
+    // A list clears the clocks of all devices on the way to PREOP, so they are measured behind it.
+    constexpr std::array<Stage, 10> listed{&BringUp::checkParams,    &BringUp::countDevices,
+                                           &BringUp::resetDevices,   &BringUp::scan,
+                                           &BringUp::compareDevices, &BringUp::configure,
+                                           &BringUp::measureClocks,  &BringUp::writeObjects,
+                                           &BringUp::settleClocks,   &BringUp::armSync};
+    for (const Stage stage : parts_.network.listed ? listed : worked) {
         (this->*stage)();
         if (!problems_.empty()) break;
         if (!brokenOff()) continue;
@@ -106,34 +114,39 @@ void BringUp::checkParams() {
                         "bytes; map fewer objects",
                         wire::MaxFrameSize));
     }
-    for (std::size_t i = 0; i < network.slaves.size(); ++i) {
-        const SlaveParams& slave = network.slaves[i];
-        if (!slave.device) {
-            blame(i, "has no device description");
+    for (std::size_t i = 0; i < network.slaves.size(); ++i) checkSlave(i);
+}
+
+void BringUp::checkSlave(std::size_t i) {
+    const SlaveParams& slave = parts_.network.slaves[i];
+    if (!slave.device) {
+        blame(i, "has no device description");
+        return;
+    }
+    if (parts_.network.listed && !slave.listed) {
+        blame(i, "has no list of commands, as the other devices have");
+        return;
+    }
+    if (slave.position != i) {
+        blame(i, fmt::format("is configured for position {}; devices must be listed in frame "
+                             "order",
+                             slave.position));
+    }
+    for (const StartupObject& object : slave.startup) {
+        if (!object.data.empty() && object.data.size() <= sizeof(core::ObjectValue::bytes))
             continue;
-        }
-        if (slave.position != i) {
-            blame(i, fmt::format("is configured for position {}; devices must be listed in frame "
-                                 "order",
-                                 slave.position));
-        }
-        for (const StartupObject& object : slave.startup) {
-            if (!object.data.empty() && object.data.size() <= sizeof(core::ObjectValue::bytes))
-                continue;
-            blame(i, fmt::format(
-                         "start-up object {:04X}h:{:02X} ({}) has {} bytes, allowed are 1 to 8",
-                         object.index, object.subindex, object.origin, object.data.size()));
-        }
-        if (slave.watchdog.count() <= 0) {
-            blame(i,
-                  "the process-data watchdog must not be off: outputs would stay on when the "
-                  "controller dies");
-        }
-        const bool objects = !slave.startup.empty() || !makePdoScript(slave).empty();
-        if (objects && !(slave.device->mailbox && slave.device->mailbox->coe)) {
-            blame(i,
-                  "start-up objects or PDOs are to be written, but the device has no CoE mailbox");
-        }
+        blame(i, fmt::format("start-up object {:04X}h:{:02X} ({}) has {} bytes, allowed are 1 to 8",
+                             object.index, object.subindex, object.origin, object.data.size()));
+    }
+    if (slave.watchdog.count() <= 0) {
+        blame(i,
+              "the process-data watchdog must not be off: outputs would stay on when the "
+              "controller dies");
+    }
+    const bool objects = !slave.startup.empty() || !makePdoScript(slave).empty() ||
+                         (slave.listed && !slave.listed->objects.empty());
+    if (objects && !(slave.device->mailbox && slave.device->mailbox->coe)) {
+        blame(i, "start-up objects or PDOs are to be written, but the device has no CoE mailbox");
     }
 }
 
@@ -173,7 +186,7 @@ void BringUp::resetDevices() {
 void BringUp::assignAddresses() {
     for (std::size_t i = 0; i < count_; ++i) {
         std::array<std::uint8_t, 2> data{};
-        wire::store16(data, 0, stationOf(i));
+        wire::store16(data, 0, stationOf(parts_.network, i));
         const auto position = static_cast<std::uint16_t>(0U - i);
         const Reply reply = talk_.ask({Command::Apwr, position, reg::StationAddress, 2, data});
         if (reply.workingCounter != 1) {
@@ -188,7 +201,7 @@ void BringUp::scan() {
     scans.reserve(count_);
     std::vector<AcyclicMachine*> machines;
     for (std::size_t i = 0; i < count_; ++i) {
-        machines.push_back(&scans.emplace_back(stationOf(i)));
+        machines.push_back(&scans.emplace_back(stationOf(parts_.network, i)));
     }
     AcyclicSlice slice{count_};
     talk_.run(slice, machines);
@@ -233,142 +246,23 @@ void BringUp::compareDevices() {
     if (problems_.empty()) say("all devices are the configured ones");
 }
 
-// --- clocks
-// ----------------------------------------------------------------------------------------------
-
-bool BringUp::dcWanted() const {
-    const auto& slaves = parts_.network.slaves;
-    return std::any_of(slaves.begin(), slaves.end(),
-                       [](const SlaveParams& slave) { return slave.dc.enabled; });
-}
-
-void BringUp::measureClocks() {
-    parts_.reference.forget();
-    if (!dcWanted()) return;
-    constexpr std::uint16_t readBytes = 32;  // 0x0900 to 0x091F
-    constexpr std::size_t unitTimeAt = reg::DcReceiveTimeUnit - reg::DcReceiveTimePort0;
-    talk_.ask({Command::Bwr, 0, reg::DcReceiveTimePort0, 4, {}});
-    const core::HostTime latched = talk_.frames().sentAt();
-    std::vector<PortTimes> ports(count_);
-    std::vector<std::uint64_t> local(count_, 0);
-    for (std::size_t i = 0; i < count_; ++i) {
-        ports[i].openPorts = found_[i].openPorts();
-        ports[i].dc = found_[i].has(reg::FeatureDc);
-        if (!ports[i].dc) continue;
-        const Reply reply =
-            talk_.ask(readRequest(stationOf(i), reg::DcReceiveTimePort0, readBytes));
-        if (!reply.served()) {
-            blame(i, "its receive times cannot be read");
-            return;
-        }
-        for (std::size_t port = 0; port < 4; ++port)
-            ports[i].at[port] = wire::load32(reply.data, 4 * port);
-        local[i] = found_[i].has(reg::FeatureDc64)
-                       ? wire::load64(reply.data, unitTimeAt)
-                       : std::uint64_t{wire::load32(reply.data, unitTimeAt)};
-        if (!parts_.reference.present()) {
-            referenceSlave_ = i;
-            parts_.reference.lead(stationOf(i), found_[i].has(reg::FeatureDc64));
-        }
-    }
-    writeClocks(latched, local, propagationDelays(ports));
-}
-
-void BringUp::writeClocks(core::HostTime latched, std::span<const std::uint64_t> local,
-                          std::span<const std::uint32_t> delays) {
-    const auto reference =
-        static_cast<std::uint64_t>((latched.time_since_epoch() + DcEpoch).count());
-    for (std::size_t i = 0; i < count_; ++i) {
-        if (!found_[i].has(reg::FeatureDc)) continue;
-        // Offset and delay lie side by side: 0x0920 with eight, 0x0928 with four bytes.
-        std::array<std::uint8_t, 12> data{};
-        std::uint64_t offset = reference + delays[i] - local[i];
-        if (!found_[i].has(reg::FeatureDc64)) offset &= 0xFFFF'FFFFU;
-        wire::store64(data, 0, offset);
-        wire::store32(data, 8, delays[i]);
-        std::array<std::uint8_t, 2> speed{};
-        wire::store16(speed, 0, 0x1000);
-        const std::uint16_t station = stationOf(i);
-        const bool written =
-            talk_.ask(writeRequest(station, reg::DcSystemTimeOffset, data)).served() &&
-            talk_.ask(writeRequest(station, reg::DcSpeedCounterStart, speed)).served();
-        if (!written) blame(i, "does not take its clock offset");
-    }
-}
-
-/// Hands the reference time round until all clocks follow it. Clocks that do not settle are no
-/// problem yet: OP waits for them.
-void BringUp::settleClocks() {
-    if (!parts_.reference.present()) return;
-    constexpr std::size_t atOnce = 64;
-    constexpr std::uint32_t quietFrames = 100;
-    std::vector<std::uint16_t> followers;
-    for (std::size_t i = 0; i < count_; ++i) {
-        if (found_[i].has(reg::FeatureDc) && i != referenceSlave_)
-            followers.push_back(stationOf(i));
-    }
-    FrameSet& frames = talk_.frames();
-    std::vector<DatagramId> reads;
-    const std::size_t rounds = std::max<std::size_t>(1, (followers.size() + atOnce - 1) / atOnce);
-    std::size_t quiet = 0;
-    std::uint32_t sent = 0;
-    for (; sent < parts_.network.dcDriftFrames && quiet < quietFrames * rounds; ++sent) {
-        if (brokenOff()) return;
-        frames.begin();
-        frames.openFrame();
-        parts_.reference.append(frames);
-        reads.clear();
-        const std::size_t from = sent % rounds * atOnce;
-        for (std::size_t i = from; i < std::min(from + atOnce, followers.size()); ++i) {
-            reads.push_back(
-                frames.append(Command::Fprd, followers[i], reg::DcSystemTimeDifference, 4));
-        }
-        if (talk_.exchange() != wire::LinkStatus::Ok) talk_.pause(CountGap);
-        parts_.reference.take(frames);
-        const bool below = std::all_of(reads.begin(), reads.end(), [&](DatagramId id) {
-            const Reply reply = frames.reply(id);
-            return reply.served() && core::Duration{wire::load32(reply.data, 0) & 0x7FFF'FFFFU} <
-                                         parts_.network.dcLimit;
-        });
-        quiet = below && parts_.reference.sample().valid ? quiet + 1 : 0;
-    }
-    say(fmt::format("clocks: {} drift frames{}", sent,
-                    quiet < quietFrames * rounds ? ", not settled yet" : ""));
-    // Where the host stands against the reference is needed even when no drift frames are wanted.
-    for (int i = 0; i < 10 && !parts_.reference.sample().valid; ++i) {
-        frames.begin();
-        frames.openFrame();
-        parts_.reference.append(frames);
-        talk_.exchange();
-        parts_.reference.take(frames);
-    }
-    if (!parts_.reference.sample().valid) blame(referenceSlave_, "its clock cannot be read");
-}
-
-void BringUp::armSync() {
-    if (!parts_.reference.present()) return;
-    constexpr core::Duration lead = std::chrono::milliseconds{100};
-    const NetworkParams& network = parts_.network;
-    std::int64_t grid = network.cycle.count();
-    for (const SlaveParams& slave : network.slaves) {
-        if (slave.dc.enabled) grid = std::lcm(grid, sync0Cycle(network, slave).count());
-    }
-    const core::DcTime now = parts_.reference.sample().referenceTime;
-    const core::DcTime start = gridAtOrAfter(now + lead, core::Duration{grid});
-    for (std::size_t i = 0; i < parts_.scripts.size(); ++i) {
-        setSyncStart(parts_.scripts[i].armSync, network.slaves[i], start);
-    }
-    runScript(&SlaveScripts::armSync);
-}
-
 // --- PREOP
 // -----------------------------------------------------------------------------------------------
 
 void BringUp::configure() {
+    constexpr auto up = static_cast<std::size_t>(Transition::InitToPreOp);
     say("configuring devices");
     for (const auto& agent : parts_.agents) agent->reset();
-    runScript(&SlaveScripts::toPreOp);
+    parts_.everyone.reset();
+    runCommon(parts_.common.before[up]);
+    if (problems_.empty()) runScript(&SlaveScripts::toPreOp);
+    if (problems_.empty()) runCommon(parts_.common.after[up]);
     if (problems_.empty()) say("all devices are in PREOP");
+}
+
+void BringUp::writeObjects() {
+    runCommon(parts_.common.before[static_cast<std::size_t>(Transition::PreOpToSafeOp)]);
+    if (problems_.empty()) runScript(&SlaveScripts::inPreOp);
 }
 
 void BringUp::runScript(Script SlaveScripts::*script) {
@@ -381,8 +275,23 @@ void BringUp::runScript(Script SlaveScripts::*script) {
         for (const ScriptNote& note : agent.notes()) {
             say(fmt::format("{}: {}", slaveLabel(parts_.network, i), describe(note)));
         }
-        if (const Step* step = agent.failedStep()) blame(i, describe(agent.failure(), *step));
+        const Step* const step = agent.failedStep();
+        if (step == nullptr) continue;
+        const auto* const listed = std::get_if<CommandStep>(step);
+        blame(i, describe(agent.failure(), *step),
+              listed != nullptr ? listed->command.origin : parts_.network.slaves[i].origin);
     }
+}
+
+void BringUp::runCommon(const Script& script) {
+    if (script.empty()) return;
+    parts_.everyone.run(script);
+    talk_.run(parts_.slice, parts_.machines);
+    const Step* const step = parts_.everyone.failedStep();
+    if (step == nullptr) return;
+    problems_.push_back({{},
+                         fmt::format("network: {}", describe(parts_.everyone.failure(), *step)),
+                         std::get<CommandStep>(*step).command.origin});
 }
 
 }  // namespace takt::fieldbus::ethercat

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "conversation.hpp"
+#include "cycle_plan.hpp"
 #include "device_scan.hpp"
+#include "listed_script.hpp"
 #include "reference_clock.hpp"
 #include "slave_agent.hpp"
 
@@ -18,6 +20,17 @@ namespace takt::fieldbus::ethercat {
 /// Station address of a slave.
 [[nodiscard]] constexpr std::uint16_t stationOf(std::size_t slave) noexcept {
     return static_cast<std::uint16_t>(1001 + slave);
+}
+
+/// The same on a network whose list may say otherwise. Devices that no list knows keep out of its
+/// numbers.
+[[nodiscard]] inline std::uint16_t stationOf(const NetworkParams& network,
+                                             std::size_t slave) noexcept {
+    if (!network.listed) return stationOf(slave);
+    constexpr std::size_t unlisted = 0xF000;
+    const bool known = slave < network.slaves.size() && network.slaves[slave].listed;
+    return known ? network.slaves[slave].listed->station
+                 : static_cast<std::uint16_t>(unlisted + slave);
 }
 
 /// Everything between a silent wire and a network in PREOP that is ready for the cyclic phase:
@@ -30,10 +43,13 @@ public:
     struct Parts {
         const NetworkParams& network;
         const LogicalLayout& layout;
+        const CyclePlan& plan;
         AcyclicSlice& slice;
         std::span<AcyclicMachine* const> machines;
         std::vector<std::unique_ptr<SlaveAgent>>& agents;
         std::vector<SlaveScripts>& scripts;
+        SlaveAgent& everyone;
+        const CommonScripts& common;
         ReferenceClock& reference;
     };
 
@@ -52,8 +68,10 @@ private:
     void breakOff();
     void blameNetwork(std::string text);
     void blame(std::size_t slave, std::string_view text);
+    void blame(std::size_t slave, std::string_view text, const std::string& origin);
 
     void checkParams();
+    void checkSlave(std::size_t slave);
     void countDevices();
     void resetDevices();
     void assignAddresses();
@@ -62,10 +80,13 @@ private:
     void measureClocks();
     void writeClocks(core::HostTime latched, std::span<const std::uint64_t> local,
                      std::span<const std::uint32_t> delays);
+    void leadReference();
     void configure();
+    void writeObjects();
     void settleClocks();
     void armSync();
     void runScript(Script SlaveScripts::*script);
+    void runCommon(const Script& script);
     [[nodiscard]] bool dcWanted() const;
 
     Parts parts_;

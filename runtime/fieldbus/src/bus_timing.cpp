@@ -4,6 +4,7 @@
 #include <takt/wire/device_description.hpp>
 #include <takt/wire/frame.hpp>
 
+#include "cycle_plan.hpp"
 #include "logical_layout.hpp"
 
 namespace takt::fieldbus {
@@ -52,12 +53,11 @@ struct Load {
     }
 };
 
-Load countFrames(const ethercat::LogicalLayout& layout, std::size_t sliceBytes) noexcept {
+Load countFrames(const ethercat::CyclePlan& plan, std::size_t sliceBytes) noexcept {
     Load load;
-    for (std::size_t i = 0; i < layout.groups.size(); ++i) {
-        std::size_t bytes = layout.groups[i].datagramBytes();
-        if (i == 0) bytes += layout.extraBytes();
-        const bool last = i + 1 == layout.groups.size();
+    for (std::size_t i = 0; i < plan.frames(); ++i) {
+        const std::size_t bytes = plan.bytesOf(i);
+        const bool last = i + 1 == plan.frames();
         // The slice rides in the last frame when there is room, else in a frame of its own.
         const bool ownFrame = last && bytes + sliceBytes > ethercat::FrameCapacity;
         load.addFrame(last && !ownFrame ? bytes + sliceBytes : bytes);
@@ -85,10 +85,10 @@ std::size_t acyclicSliceBytes(const NetworkParams& network) noexcept {
 }
 
 BusTiming computeTiming(const NetworkParams& network) {
-    const ethercat::LogicalLayout layout = ethercat::makeLayout(network);
+    const ethercat::CyclePlan plan = ethercat::makePlan(network, ethercat::makeLayout(network));
     BusTiming timing;
     timing.acyclicBytes = acyclicSliceBytes(network);
-    const Load load = countFrames(layout, timing.acyclicBytes);
+    const Load load = countFrames(plan, timing.acyclicBytes);
     timing.frames = load.frames;
     timing.frameBytes = load.frameBytes;
     timing.wireTime = WireByte * static_cast<std::int64_t>(load.wireBytes);

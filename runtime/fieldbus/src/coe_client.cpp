@@ -37,6 +37,7 @@ bool CoeClient::begin(core::ObjectAddress address, bool writing) noexcept {
     if (pending()) return false;
     address_ = address;
     writing_ = writing;
+    access_ = Access::OneEntry;
     reply_ = {};
     reply_.state = core::ObjectState::Pending;
     tries_ = 0;
@@ -69,9 +70,10 @@ bool CoeClient::startWrite(core::ObjectAddress address, const core::ObjectValue&
     return true;
 }
 
-bool CoeClient::startWrite(core::ObjectAddress address,
-                           std::span<const std::uint8_t> from) noexcept {
+bool CoeClient::startWrite(core::ObjectAddress address, std::span<const std::uint8_t> from,
+                           Access access) noexcept {
     if (!begin(address, true)) return false;
+    access_ = access;
     if (from.empty()) {
         finish(core::ObjectState::Failed, abortcode::LengthMismatch);
         return true;
@@ -121,6 +123,9 @@ std::size_t CoeClient::fillDownload(std::span<std::uint8_t> body) noexcept {
         wire::store32(body, DataAt, static_cast<std::uint32_t>(size_));
         at += 4;
         done_ = std::min(size_, body.size() - at);
+    }
+    if (access_ == Access::Whole) {
+        body[SdoAt] = static_cast<std::uint8_t>(body[SdoAt] | mbx::CompleteAccess);
     }
     std::copy_n(from_.begin(), done_, body.begin() + static_cast<std::ptrdiff_t>(at));
     return std::max(at + done_, SdoAt + mbx::MinSdoSize);

@@ -16,6 +16,9 @@ namespace takt::fieldbus::ethercat {
 /// refuses a segment that it has seen.
 class CoeClient {
 public:
+    /// Whole: all entries from the sub-index (0 or 1) on, packed as ETG.1000.6 5.6.2.5 has it.
+    enum class Access : std::uint8_t { OneEntry, Whole };
+
     CoeClient(Mailbox& mailbox, core::Duration requestTimeout, core::Duration responseTimeout);
 
     /// rt. Forgets a pending request (it fails) and the box counters.
@@ -28,7 +31,8 @@ public:
     /// stay where they are until the request has ended. The reply carries no value.
     /// \return false while another request is pending
     bool startRead(core::ObjectAddress address, std::span<std::uint8_t> into) noexcept;
-    bool startWrite(core::ObjectAddress address, std::span<const std::uint8_t> from) noexcept;
+    bool startWrite(core::ObjectAddress address, std::span<const std::uint8_t> from,
+                    Access access = Access::OneEntry) noexcept;
     /// rt. Bytes that the last read has brought.
     [[nodiscard]] std::size_t length() const noexcept { return done_; }
     /// rt. Ends the request at once with this abort code; for what needs no mailbox to be refused.
@@ -67,6 +71,7 @@ private:
     core::ObjectAddress address_{};
     core::ObjectValue value_{};
     bool writing_{false};
+    Access access_{Access::OneEntry};
     bool segmented_{false};               ///< the first message of the transfer is over
     std::uint8_t toggle_{0};              ///< of the segment under way
     std::span<std::uint8_t> into_{};      ///< where a read goes …

@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t ReferenceTimeBytes = 8;
 constexpr std::size_t AlStatusBytes = 2;
 
+/// Bytes of the first frame beside its process data: reference time, mailbox states, AL status.
 std::size_t extraBytesFor(std::size_t mailboxBytes) noexcept {
     const std::size_t mailbox = mailboxBytes == 0 ? 0 : wire::DatagramOverhead + mailboxBytes;
     return wire::DatagramOverhead + ReferenceTimeBytes + wire::DatagramOverhead + AlStatusBytes +
@@ -35,15 +36,6 @@ void enter(ProcessGroup& group, SlavePlace& place, const SlaveParams& slave) noe
 }
 
 }  // namespace
-
-std::size_t ProcessGroup::datagramBytes() const noexcept {
-    const std::size_t datagrams = lrw ? 1 : 2;
-    return datagrams * wire::DatagramOverhead + outputBytes + inputBytes;
-}
-
-std::size_t LogicalLayout::extraBytes() const noexcept {
-    return extraBytesFor(mailboxBytes());
-}
 
 LogicalLayout makeLayout(const NetworkParams& network) {
     LogicalLayout layout;

@@ -42,8 +42,6 @@ struct ProcessGroup {
     [[nodiscard]] std::uint16_t expectedLrw() const noexcept {
         return static_cast<std::uint16_t>(2 * writers + readers);
     }
-    /// Bytes of its datagrams with headers.
-    [[nodiscard]] std::size_t datagramBytes() const noexcept;
 };
 
 struct LogicalLayout {
@@ -55,8 +53,6 @@ struct LogicalLayout {
     [[nodiscard]] std::uint16_t mailboxBytes() const noexcept {
         return static_cast<std::uint16_t>((mailboxBits + 7) / 8);
     }
-    /// Bytes of the first frame beside its process data: reference time, mailbox states, AL status.
-    [[nodiscard]] std::size_t extraBytes() const noexcept;
 };
 
 [[nodiscard]] LogicalLayout makeLayout(const NetworkParams& network);

@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <optional>
 #include <takt/fieldbus/ethercat/master.hpp>
 #include <takt/wire/byte_io.hpp>
 #include <takt/wire/registers.hpp>
 
 #include "bring_up.hpp"
+#include "cycle_plan.hpp"
+#include "listed_script.hpp"
 #include "messages.hpp"
 #include "network_walk.hpp"
 
@@ -21,12 +24,13 @@ struct Master::Parts {
 
     void exchange(core::CycleNumber cycle) noexcept;
     void compose() noexcept;
+    void append(std::size_t datagram) noexcept;
+    [[nodiscard]] std::uint8_t sendState() const noexcept;
     void prepare() noexcept;
     void takeBus() noexcept;
     void takeMailboxStates() noexcept;
     void fetchMail(std::span<const std::uint8_t> states) noexcept;
     void lookIntoMailboxes() noexcept;
-    void appendExtras() noexcept;
     [[nodiscard]] bool mapped() const noexcept;
 
     NetworkParams network;
@@ -34,20 +38,25 @@ struct Master::Parts {
     core::ClockSource& clock;
     BusTiming timing;
     LogicalLayout layout;
+    CyclePlan plan;
+    CommonScripts common;
     FrameSet frames;
     AcyclicSlice slice;
+    SlaveParams nobody;  ///< in the place of a slave for commands to all
+    SlaveAgent everyone;
     std::vector<std::unique_ptr<SlaveAgent>> agents;
     std::vector<AcyclicMachine*> machines;
     std::vector<SlaveScripts> scripts;
-    std::vector<std::uint16_t> mailboxSlave;  ///< slave of each mailbox state bit
     std::vector<std::uint16_t> unmappedMailboxes;
     ProcessData data;
     ReferenceClock reference;
     NetworkWalk walk;
 
     BusReading reading{};
-    DatagramId statusRead{0};
-    DatagramId mailboxRead{0};
+    bool referenceSent{false};
+    std::optional<DatagramId> statusRead;
+    std::optional<DatagramId> mailboxRead;
+    std::uint8_t composedFor{0};
     core::HostTime now{};
     std::uint64_t cycles{0};
     bool prepared{false};
@@ -60,22 +69,25 @@ Master::Parts::Parts(const NetworkParams& params, wire::Link& wireLink,
       clock{clockSource},
       timing{computeTiming(network)},
       layout{makeLayout(network)},
-      frames{layout.groups.size() + 1, 2 * layout.groups.size() + 3 + MostDatagramsInFrame},
-      slice{network.slaves.size()},
-      data{layout},
+      plan{makePlan(network, layout)},
+      common{makeCommonScripts(network)},
+      frames{plan.frames() + 1, plan.datagrams.size() + MostDatagramsInFrame},
+      slice{network.slaves.size() + 1},
+      everyone{nobody, 0, slice.work(), network.slaves.size()},
+      data{plan},
       reference{network.cycle, timing.sync0AfterSend},
-      walk{network, agents, scripts, data} {
+      walk{network, agents, scripts, everyone, common, data} {
     for (std::size_t i = 0; i < network.slaves.size(); ++i) {
-        agents.push_back(
-            std::make_unique<SlaveAgent>(network.slaves[i], stationOf(i), slice.work(), i));
+        agents.push_back(std::make_unique<SlaveAgent>(network.slaves[i], stationOf(network, i),
+                                                      slice.work(), i));
         machines.push_back(agents.back().get());
         scripts.push_back(makeScripts(network, i, layout));
-        if (layout.slaves[i].mailboxBit != NoMailboxBit) {
-            mailboxSlave.push_back(static_cast<std::uint16_t>(i));
-        } else if (mailboxPlace(network.slaves[i])) {
-            unmappedMailboxes.push_back(static_cast<std::uint16_t>(i));
-        }
+        const auto number = static_cast<std::uint16_t>(i);
+        const bool mapped = std::find(plan.mailboxSlave.begin(), plan.mailboxSlave.end(), number) !=
+                            plan.mailboxSlave.end();
+        if (!mapped && mailboxPlace(network.slaves[i])) unmappedMailboxes.push_back(number);
     }
+    machines.push_back(&everyone);
 }
 
 /// FMMUs and process data SyncManagers are set up.
@@ -83,33 +95,85 @@ bool Master::Parts::mapped() const noexcept {
     return walk.state() != NetworkState::Off && walk.state() != NetworkState::Init;
 }
 
-/// Puts together once what goes out in every cycle.
+/// The state by which listed datagrams are sent or not; on the way down it stays what it was.
+std::uint8_t Master::Parts::sendState() const noexcept {
+    switch (walk.state()) {
+        case NetworkState::Off:
+        case NetworkState::PreOp:
+        case NetworkState::Init:
+            return SentInPreOp;
+        case NetworkState::GoingSafeOp:
+        case NetworkState::SafeOp:
+            return SentInSafeOp;
+        case NetworkState::GoingOp:
+        case NetworkState::Op:
+            return SentInOp;
+        case NetworkState::GoingDown:
+        case NetworkState::Failed:
+            return composedFor;
+    }
+    return composedFor;
+}
+
+/// Puts together once what goes out in every cycle, or again when another state wants other
+/// datagrams.
 void Master::Parts::compose() noexcept {
+    composedFor = sendState();
     frames.begin();
-    for (std::size_t i = 0; i < layout.groups.size(); ++i) {
-        frames.openFrame();
-        if (i == 0 && reference.present()) reference.append(frames);
-        data.append(frames, i);
-        if (i == 0) appendExtras();
+    data.forgetDatagrams();
+    referenceSent = false;
+    statusRead.reset();
+    mailboxRead.reset();
+    std::uint32_t open = 0;  // frames opened so far
+    for (std::size_t i = 0; i < plan.datagrams.size(); ++i) {
+        const PlannedDatagram& datagram = plan.datagrams[i];
+        if ((datagram.states & composedFor) == 0) continue;
+        if (datagram.kind == CyclicCommand::Kind::ReferenceTime && !reference.present()) continue;
+        if (open <= datagram.frame) {
+            frames.openFrame();
+            open = datagram.frame + 1U;
+        }
+        append(i);
     }
     frames.keep();
 }
 
+void Master::Parts::append(std::size_t datagram) noexcept {
+    const PlannedDatagram& planned = plan.datagrams[datagram];
+    const auto plain = [&] {
+        return frames.appendLogical(planned.command, planned.address, planned.length);
+    };
+    switch (planned.kind) {
+        case CyclicCommand::Kind::ReferenceTime:
+            reference.append(frames);
+            referenceSent = true;
+            break;
+        case CyclicCommand::Kind::ProcessData:
+            data.append(frames, datagram);
+            break;
+        case CyclicCommand::Kind::MailboxStates:
+            mailboxRead = plain();
+            break;
+        case CyclicCommand::Kind::AlStatus:
+            statusRead = plain();
+            break;
+        case CyclicCommand::Kind::Other:
+            plain();
+            break;
+    }
+}
+
 void Master::Parts::prepare() noexcept {
-    frames.repeat();
-    if (reference.present()) reference.fill(frames);
+    if (plan.byState && sendState() != composedFor) {
+        compose();
+    } else {
+        frames.repeat();
+    }
+    if (referenceSent) reference.fill(frames);
     data.fill(frames);
     if (!slice.idle()) slice.fill(frames, machines, timing.acyclicBytes, now);
     frames.finish();
     prepared = true;
-}
-
-void Master::Parts::appendExtras() noexcept {
-    if (layout.mailboxBits != 0) {
-        mailboxRead =
-            frames.appendLogical(wire::Command::Lrd, MailboxStateBase, layout.mailboxBytes());
-    }
-    statusRead = frames.append(wire::Command::Brd, 0, wire::reg::AlStatus, 2);
 }
 
 void Master::Parts::exchange(core::CycleNumber cycle) noexcept {
@@ -119,7 +183,7 @@ void Master::Parts::exchange(core::CycleNumber cycle) noexcept {
     const wire::LinkStatus status = frames.send(link);
     now = clock.now();
     if (status == wire::LinkStatus::Ok) frames.receive(link, now + timing.receiveDeadline);
-    if (reference.present()) reference.take(frames);
+    if (referenceSent) reference.take(frames);
     data.take(frames, walk.supervised());
     takeBus();
     if (!slice.idle()) slice.deliver(frames, machines, now);
@@ -128,7 +192,7 @@ void Master::Parts::exchange(core::CycleNumber cycle) noexcept {
 }
 
 void Master::Parts::takeBus() noexcept {
-    const Reply reply = frames.reply(statusRead);
+    const Reply reply = statusRead ? frames.reply(*statusRead) : Reply{};
     reading.statusArrived = reply.arrived;
     reading.hasReference = reference.present();
     if (!reply.arrived) return;
@@ -139,8 +203,8 @@ void Master::Parts::takeBus() noexcept {
 void Master::Parts::takeMailboxStates() noexcept {
     if (!mapped()) return;
     if (!unmappedMailboxes.empty()) lookIntoMailboxes();
-    if (layout.mailboxBits == 0) return;
-    const Reply reply = frames.reply(mailboxRead);
+    if (!mailboxRead) return;
+    const Reply reply = frames.reply(*mailboxRead);
     if (!reply.served()) return;
     unsigned any = 0;
     for (const std::uint8_t byte : reply.data) any |= byte;
@@ -148,8 +212,11 @@ void Master::Parts::takeMailboxStates() noexcept {
 }
 
 void Master::Parts::fetchMail(std::span<const std::uint8_t> states) noexcept {
-    for (std::size_t bit = 0; bit < mailboxSlave.size(); ++bit) {
-        if ((states[bit / 8] >> (bit % 8) & 1U) != 0) agents[mailboxSlave[bit]]->mailboxFull();
+    const std::size_t bits = std::min(plan.mailboxSlave.size(), 8 * states.size());
+    for (std::size_t bit = 0; bit < bits; ++bit) {
+        if ((states[bit / 8] >> (bit % 8) & 1U) == 0) continue;
+        const std::uint16_t slave = plan.mailboxSlave[bit];
+        if (slave != CyclePlan::NoSlave) agents[slave]->mailboxFull();
     }
 }
 
@@ -172,8 +239,8 @@ std::vector<BringUpProblem> Master::bringUp(const std::function<void(std::string
     parts.prepared = false;
     parts.data.reset();
     Conversation talk{parts.frames, parts.link, parts.clock};
-    BringUp bringUp{{parts.network, parts.layout, parts.slice, parts.machines, parts.agents,
-                     parts.scripts, parts.reference},
+    BringUp bringUp{{parts.network, parts.layout, parts.plan, parts.slice, parts.machines,
+                     parts.agents, parts.scripts, parts.everyone, parts.common, parts.reference},
                     talk,
                     progress,
                     goOn};

@@ -12,12 +12,12 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-constexpr const char* OrderHint = "check the ESI file or the order of the devices";
-
-void compareNumber(Lines& lines, const char* what, std::uint32_t expected, std::uint32_t found) {
+void compareNumber(Lines& lines, const SlaveParams& slave, const char* what, std::uint32_t expected,
+                   std::uint32_t found) {
     if (expected == found) return;
-    lines.push_back(
-        fmt::format("expected {} {:#010x}, found {:#010x}; {}", what, expected, found, OrderHint));
+    lines.push_back(fmt::format(
+        "expected {} {:#010x}, found {:#010x}; check the {} file or the order of the devices", what,
+        expected, found, slave.listed ? "network" : "ESI"));
 }
 
 void compareRevision(Lines& lines, const SlaveParams& expected, std::uint32_t found) {
@@ -26,7 +26,7 @@ void compareRevision(Lines& lines, const SlaveParams& expected, std::uint32_t fo
         case RevisionRule::Ignore:
             return;
         case RevisionRule::Equal:
-            compareNumber(lines, "revision", wanted, found);
+            compareNumber(lines, expected, "revision", wanted, found);
             return;
         case RevisionRule::EqualOrGreater:
             if (found >= wanted) return;
@@ -77,8 +77,42 @@ std::string objectName(std::uint16_t index, std::uint8_t subindex) {
     return fmt::format("{:04X}h:{:02X}", index, subindex);
 }
 
+/// "init command 'check vendor id'"
+std::string commandName(const ListedCommand& command) {
+    return command.comment.empty() ? fmt::format("init command at register {:#06x}", command.ado)
+                                   : fmt::format("init command '{}'", command.comment);
+}
+
+std::string unanswered(const ListedCommand& command, std::int64_t counter) {
+    return fmt::format("the {} came back with working counter {}, expected {}",
+                       commandName(command), counter, command.workingCounter.value_or(0));
+}
+
+std::string mismatch(const ListedCommand& command, std::int64_t seen) {
+    std::uint32_t wanted = 0;
+    if (command.validation) {
+        const auto& data = command.validation->data;
+        for (std::size_t i = 0; i < data.size() && i < 4; ++i) {
+            wanted |= std::uint32_t{data[i]} << (8U * i);
+        }
+    }
+    return fmt::format("the {} reads {:#x}, expected {:#x}", commandName(command), seen, wanted);
+}
+
 std::string alWords(std::uint16_t code) {
     return fmt::format("AL status code {:#06x}: {}", code, wire::explainAlStatus(code));
+}
+
+/// The listed command that a problem speaks of; nullptr: of none.
+const ListedCommand* listedCommand(const NetworkParams& network, const NetworkProblem& problem) {
+    const std::vector<ListedCommand>* commands = nullptr;
+    if (problem.slave < network.slaves.size() && network.slaves[problem.slave].listed) {
+        commands = &network.slaves[problem.slave].listed->commands;
+    } else if (problem.slave == NetworkProblem::NoSlave && network.listed) {
+        commands = &network.listed->commands;
+    }
+    return commands != nullptr && problem.item < commands->size() ? &(*commands)[problem.item]
+                                                                  : nullptr;
 }
 
 }  // namespace
@@ -96,11 +130,12 @@ std::string describe(const wire::Identity& identity) {
 std::vector<std::string> compare(const SlaveParams& expected, const ScannedDevice& found) {
     Lines lines;
     const wire::Identity& wanted = expected.device->identity;
-    compareNumber(lines, "vendor", wanted.vendor, found.identity.vendor);
-    compareNumber(lines, "product", wanted.product, found.identity.product);
+    compareNumber(lines, expected, "vendor", wanted.vendor, found.identity.vendor);
+    compareNumber(lines, expected, "product", wanted.product, found.identity.product);
     compareRevision(lines, expected, found.identity.revision);
     if (!lines.empty()) return lines;  // another device: what it can do means nothing here
-    if (const auto place = mailboxPlace(expected)) {
+    // A list sets the mailbox up as it likes, within what the device takes.
+    if (const auto place = mailboxPlace(expected); place && !expected.listed) {
         compareBox(lines, "receive", found.mailboxOut, place->outStart, place->outSize);
         compareBox(lines, "send", found.mailboxIn, place->inStart, place->inSize);
     }
@@ -133,6 +168,10 @@ std::string describe(const ScriptFailure& failure, const Step& step) {
         case ScriptFailure::Kind::StateSilent:
             return fmt::format("does not answer on the way to {}; check cable and power",
                                wire::name(failure.target));
+        case ScriptFailure::Kind::CommandUnanswered:
+            return unanswered(std::get<CommandStep>(step).command, failure.number);
+        case ScriptFailure::Kind::CommandMismatch:
+            return mismatch(std::get<CommandStep>(step).command, failure.number);
     }
     return {};
 }
@@ -147,7 +186,21 @@ std::string describe(const NetworkParams& network, const NetworkProblem& problem
     const std::string who = problem.slave == NetworkProblem::NoSlave
                                 ? std::string{"network"}
                                 : slaveLabel(network, problem.slave);
+    const ListedCommand* const command = listedCommand(network, problem);
     switch (problem.kind) {
+        case NetworkProblem::Kind::ObjectRefused:
+            return fmt::format("{} refuses object {:04X}h with {}", who, problem.item,
+                               abortWords(static_cast<std::uint32_t>(problem.number)));
+        case NetworkProblem::Kind::CommandUnanswered:
+            return command == nullptr
+                       ? std::string{}
+                       : fmt::format("{}: {} ({})", who, unanswered(*command, problem.number),
+                                     command->origin);
+        case NetworkProblem::Kind::CommandMismatch:
+            return command == nullptr
+                       ? std::string{}
+                       : fmt::format("{}: {} ({})", who, mismatch(*command, problem.number),
+                                     command->origin);
         case NetworkProblem::Kind::None:
             return {};
         case NetworkProblem::Kind::StateRefused:

@@ -41,8 +41,14 @@ const char* name(NetworkState state) noexcept {
 
 NetworkWalk::NetworkWalk(const NetworkParams& network,
                          std::vector<std::unique_ptr<SlaveAgent>>& agents,
-                         std::vector<SlaveScripts>& scripts, ProcessData& data)
-    : network_{network}, agents_{agents}, scripts_{scripts}, data_{data} {}
+                         std::vector<SlaveScripts>& scripts, SlaveAgent& everyone,
+                         const CommonScripts& common, ProcessData& data)
+    : network_{network},
+      agents_{agents},
+      scripts_{scripts},
+      everyone_{everyone},
+      common_{common},
+      data_{data} {}
 
 void NetworkWalk::begin(std::size_t reference) noexcept {
     reference_ = reference;
@@ -69,11 +75,11 @@ void NetworkWalk::step(core::CycleNumber cycle, core::HostTime now,
             break;
         case NetworkState::PreOp:
             if (!opWanted_) break;
-            runAll(&SlaveScripts::toSafeOp);
             state_ = NetworkState::GoingSafeOp;
+            begin(Transition::PreOpToSafeOp, &SlaveScripts::toSafeOp, AlState::None);
             break;
         case NetworkState::GoingSafeOp:
-            if (anyRunning()) break;
+            if (underWay()) break;
             climbed(NetworkState::SafeOp);
             startWaiting(now);
             break;
@@ -82,7 +88,7 @@ void NetworkWalk::step(core::CycleNumber cycle, core::HostTime now,
             if (state_ == NetworkState::SafeOp) waitForOp(now, reading);
             break;
         case NetworkState::GoingOp:
-            if (!anyRunning()) climbed(NetworkState::Op);
+            if (!underWay()) climbed(NetworkState::Op);
             break;
         case NetworkState::Op:
             supervise(reading, AlState::Op);
@@ -95,11 +101,59 @@ void NetworkWalk::step(core::CycleNumber cycle, core::HostTime now,
     if (state_ != NetworkState::Op || asked_ || !allWell_) updateHealth();
 }
 
-void NetworkWalk::runAll(ScriptOf script) noexcept {
-    for (std::size_t i = 0; i < agents_.size(); ++i) agents_[i]->run(scripts_[i].*script);
+// --- transitions
+// --------------------------------------------------------------------------------
+
+void NetworkWalk::begin(Transition transition, ScriptOf script, AlState atLeast) noexcept {
+    transition_ = transition;
+    script_ = script;
+    atLeast_ = atLeast;
+    // What comes before the way to SAFEOP has been done in bring-up.
+    const bool nothingBefore = transition == Transition::PreOpToSafeOp ||
+                               common_.before[static_cast<std::size_t>(transition)].empty();
+    stage_ = nothingBefore ? Stage::Slaves : Stage::Before;
+    startStage();
+    static_cast<void>(underWay());
+}
+
+void NetworkWalk::startStage() noexcept {
+    const auto number = static_cast<std::size_t>(transition_);
+    switch (stage_) {
+        case Stage::Before:
+            everyone_.run(common_.before[number]);
+            break;
+        case Stage::Slaves:
+            for (std::size_t i = 0; i < agents_.size(); ++i) {
+                if (agents_[i]->al().state >= atLeast_) agents_[i]->run(scripts_[i].*script_);
+            }
+            break;
+        case Stage::After:
+            everyone_.run(common_.after[number]);
+            break;
+        case Stage::Over:
+            break;
+    }
+}
+
+bool NetworkWalk::underWay() noexcept {
+    while (stage_ != Stage::Over) {
+        if (anyRunning()) return true;
+        const bool slavesFailed =
+            std::any_of(agents_.begin(), agents_.end(), [](const auto& agent) {
+                return agent->scriptState() == SlaveAgent::ScriptState::Failed;
+            });
+        // Going down, a slave that refuses or is gone does not hold up the others.
+        const bool up = state_ != NetworkState::GoingDown;
+        const bool failed =
+            everyone_.scriptState() == SlaveAgent::ScriptState::Failed || slavesFailed;
+        stage_ = up && failed ? Stage::Over : static_cast<Stage>(static_cast<unsigned>(stage_) + 1);
+        startStage();
+    }
+    return false;
 }
 
 bool NetworkWalk::anyRunning() const noexcept {
+    if (everyone_.scriptState() == SlaveAgent::ScriptState::Running) return true;
     return std::any_of(agents_.begin(), agents_.end(), [](const auto& agent) {
         return agent->scriptState() == SlaveAgent::ScriptState::Running;
     });
@@ -112,32 +166,51 @@ void NetworkWalk::fail(const NetworkProblem& problem) noexcept {
 }
 
 bool NetworkWalk::blameFailed() noexcept {
+    if (blame(everyone_, NetworkProblem::NoSlave)) return true;
     for (std::size_t i = 0; i < agents_.size(); ++i) {
-        if (agents_[i]->scriptState() != SlaveAgent::ScriptState::Failed) continue;
-        const ScriptFailure& failure = agents_[i]->failure();
-        NetworkProblem problem;
-        problem.slave = static_cast<std::uint16_t>(i);
-        problem.wanted = failure.target;
-        problem.seen = failure.seen.state;
-        problem.alStatusCode = failure.seen.code;
-        switch (failure.kind) {
-            case ScriptFailure::Kind::StateRefused:
-                problem.kind = NetworkProblem::Kind::StateRefused;
-                break;
-            case ScriptFailure::Kind::StateTimedOut:
-                problem.kind = NetworkProblem::Kind::StateTimedOut;
-                break;
-            case ScriptFailure::Kind::None:
-            case ScriptFailure::Kind::RegisterSilent:
-            case ScriptFailure::Kind::ObjectAborted:
-            case ScriptFailure::Kind::StateSilent:
-                problem.kind = NetworkProblem::Kind::Silent;
-                break;
-        }
-        fail(problem);
-        return true;
+        if (blame(*agents_[i], static_cast<std::uint16_t>(i))) return true;
     }
     return false;
+}
+
+bool NetworkWalk::blame(const SlaveAgent& agent, std::uint16_t slave) noexcept {
+    if (agent.scriptState() != SlaveAgent::ScriptState::Failed) return false;
+    const ScriptFailure& failure = agent.failure();
+    NetworkProblem problem;
+    problem.slave = slave;
+    problem.wanted = failure.target;
+    problem.seen = failure.seen.state;
+    problem.alStatusCode = failure.seen.code;
+    switch (failure.kind) {
+        case ScriptFailure::Kind::StateRefused:
+            problem.kind = NetworkProblem::Kind::StateRefused;
+            break;
+        case ScriptFailure::Kind::StateTimedOut:
+            problem.kind = NetworkProblem::Kind::StateTimedOut;
+            break;
+        case ScriptFailure::Kind::ObjectAborted:
+            problem.kind = NetworkProblem::Kind::ObjectRefused;
+            problem.item = failure.address;
+            problem.number = failure.abortCode;
+            break;
+        case ScriptFailure::Kind::CommandUnanswered:
+        case ScriptFailure::Kind::CommandMismatch:
+            problem.kind = failure.kind == ScriptFailure::Kind::CommandMismatch
+                               ? NetworkProblem::Kind::CommandMismatch
+                               : NetworkProblem::Kind::CommandUnanswered;
+            problem.number = failure.number;
+            if (const auto* step = std::get_if<CommandStep>(agent.failedStep())) {
+                problem.item = static_cast<std::uint32_t>(step->number);
+            }
+            break;
+        case ScriptFailure::Kind::None:
+        case ScriptFailure::Kind::RegisterSilent:
+        case ScriptFailure::Kind::StateSilent:
+            problem.kind = NetworkProblem::Kind::Silent;
+            break;
+    }
+    fail(problem);
+    return true;
 }
 
 void NetworkWalk::climbed(NetworkState reached) noexcept {
@@ -183,8 +256,8 @@ void NetworkWalk::waitForOp(core::HostTime now, const BusReading& reading) noexc
     const bool counters = goodInRow_ >= GoodCyclesBeforeOp;
     const bool clocks = !reading.hasReference || (clocksQuiet() && reading.clockLocked);
     if (counters && clocks) {
-        runAll(&SlaveScripts::toOp);
         state_ = NetworkState::GoingOp;
+        begin(Transition::SafeOpToOp, &SlaveScripts::toOp, AlState::None);
     } else if (now > waitUntil_) {
         fail(whyNotReady(reading));
     }
@@ -250,6 +323,7 @@ void NetworkWalk::noteFallen(AlState expected) noexcept {
                     al.state,
                     al.code,
                     0,
+                    0,
                     cycle_};
         if (expected != AlState::Op) fail(problem_);
     }
@@ -267,7 +341,7 @@ void NetworkWalk::updateHealth() noexcept {
 void NetworkWalk::recover() noexcept {
     opWanted_ = false;
     for (std::size_t i = 0; i < agents_.size(); ++i) {
-        if (!data_.health(i).operational) agents_[i]->run(scripts_[i].toOp);
+        if (!data_.health(i).operational) agents_[i]->run(scripts_[i].recover);
     }
 }
 
@@ -280,26 +354,18 @@ void NetworkWalk::startDown() noexcept {
         state_ == NetworkState::GoingDown) {
         return;
     }
-    for (std::size_t i = 0; i < agents_.size(); ++i) {
-        if (agents_[i]->al().state == AlState::Op) agents_[i]->run(scripts_[i].backToSafeOp);
-    }
     downStage_ = 0;
     state_ = NetworkState::GoingDown;
+    begin(Transition::OpToSafeOp, &SlaveScripts::backToSafeOp, AlState::Op);
 }
 
-/// A slave that refuses or is gone does not hold up the others.
 void NetworkWalk::goDown() noexcept {
-    if (anyRunning()) return;
+    if (underWay()) return;
     ++downStage_;
     if (downStage_ == 1) {
-        for (std::size_t i = 0; i < agents_.size(); ++i) {
-            const AlState state = agents_[i]->al().state;
-            if (state == AlState::SafeOp || state == AlState::Op) {
-                agents_[i]->run(scripts_[i].backToPreOp);
-            }
-        }
+        begin(Transition::SafeOpToPreOp, &SlaveScripts::backToPreOp, AlState::SafeOp);
     } else if (downStage_ == 2) {
-        runAll(&SlaveScripts::backToInit);
+        begin(Transition::PreOpToInit, &SlaveScripts::backToInit, AlState::None);
     } else {
         state_ = NetworkState::Init;
     }

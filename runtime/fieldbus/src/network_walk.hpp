@@ -8,6 +8,7 @@
 #include <takt/fieldbus/fieldbus_params.hpp>
 #include <vector>
 
+#include "listed_script.hpp"
 #include "process_data.hpp"
 #include "slave_agent.hpp"
 
@@ -26,8 +27,10 @@ struct BusReading {
 /// OP.
 class NetworkWalk {
 public:
+    /// `everyone` runs the commands to all devices, `common`.
     NetworkWalk(const NetworkParams& network, std::vector<std::unique_ptr<SlaveAgent>>& agents,
-                std::vector<SlaveScripts>& scripts, ProcessData& data);
+                std::vector<SlaveScripts>& scripts, SlaveAgent& everyone,
+                const CommonScripts& common, ProcessData& data);
 
     /// After bring-up. `reference`: the slave whose clock leads.
     void begin(std::size_t reference) noexcept;
@@ -47,8 +50,15 @@ public:
 private:
     using ScriptOf = Script SlaveScripts::*;
 
-    void runAll(ScriptOf script) noexcept;
+    enum class Stage : std::uint8_t { Before, Slaves, After, Over };
+
+    /// Starts a transition for the slaves that are in `atLeast` or above.
+    void begin(Transition transition, ScriptOf script, wire::AlState atLeast) noexcept;
+    void startStage() noexcept;
+    /// Goes on to the next stage of the transition. \return false when it is over or has failed
+    [[nodiscard]] bool underWay() noexcept;
     [[nodiscard]] bool anyRunning() const noexcept;
+    [[nodiscard]] bool blame(const SlaveAgent& agent, std::uint16_t slave) noexcept;
     [[nodiscard]] bool blameFailed() noexcept;
     void fail(const NetworkProblem& problem) noexcept;
     void climbed(NetworkState reached) noexcept;
@@ -66,6 +76,8 @@ private:
     const NetworkParams& network_;
     std::vector<std::unique_ptr<SlaveAgent>>& agents_;
     std::vector<SlaveScripts>& scripts_;
+    SlaveAgent& everyone_;
+    const CommonScripts& common_;
     ProcessData& data_;
     NetworkState state_{NetworkState::Off};
     NetworkProblem problem_{};
@@ -79,6 +91,10 @@ private:
     bool asked_{false};    ///< AL status of every slave was asked for
     bool allWell_{false};  ///< every slave was in the expected state when last asked
     std::uint8_t downStage_{0};
+    Stage stage_{Stage::Over};
+    Transition transition_{Transition::InitToPreOp};
+    ScriptOf script_{nullptr};
+    wire::AlState atLeast_{wire::AlState::None};
     core::HostTime waitUntil_{};
 };
 

@@ -13,7 +13,7 @@ const std::vector<PdoParams>& pdosOf(const SlaveParams& slave, Direction directi
 core::PdoSlot findEntry(const SlaveParams& slave, Direction direction, std::uint16_t index,
                         std::uint8_t subindex) noexcept {
     constexpr std::uint8_t widest = 32;
-    std::uint32_t offset = 0;
+    std::uint32_t offset = direction == Direction::Outputs ? slave.outputShift : slave.inputShift;
     for (const PdoParams& pdo : pdosOf(slave, direction)) {
         for (const PdoEntryParams& entry : pdo.entries) {
             const bool wanted = index != 0 && entry.index == index && entry.subindex == subindex;

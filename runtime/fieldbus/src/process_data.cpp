@@ -6,25 +6,17 @@
 
 namespace takt::fieldbus::ethercat {
 
-ProcessData::ProcessData(const LogicalLayout& layout)
-    : layout_{layout},
-      buffers_(layout.groups.size()),
-      health_(layout.slaves.size()),
-      counters_(layout.groups.size()) {
-    std::size_t outputs = 0;
-    std::size_t inputs = 0;
-    for (std::size_t i = 0; i < buffers_.size(); ++i) {
-        const ProcessGroup& group = layout.groups[i];
-        buffers_[i].outputs = outputs;
-        buffers_[i].inputs = inputs;
-        outputs += group.outputBytes;
-        inputs += group.inputBytes;
-        counters_[i].expected = group.lrw
-                                    ? group.expectedLrw()
-                                    : static_cast<std::uint16_t>(group.writers + group.readers);
+ProcessData::ProcessData(const CyclePlan& plan)
+    : plan_{plan},
+      places_(plan.datagrams.size()),
+      good_(plan.groups.size(), 0),
+      outputs_(plan.outputBytes),
+      inputs_(plan.inputBytes),
+      health_(plan.slaves.size()),
+      counters_(plan.groups.size()) {
+    for (std::size_t i = 0; i < counters_.size(); ++i) {
+        counters_[i].expected = plan.groups[i].expected;
     }
-    outputs_.resize(outputs);
-    inputs_.resize(inputs);
 }
 
 void ProcessData::reset() noexcept {
@@ -35,16 +27,14 @@ void ProcessData::reset() noexcept {
         counters.lastSeen = 0;
         counters.wrong = counters.lost = 0;
     }
-    for (Buffers& buffers : buffers_) buffers.good = false;
+    std::fill(good_.begin(), good_.end(), std::uint8_t{0});
     allGood_ = wrongCounter_ = false;
 }
 
 core::DeviceImage ProcessData::image(std::size_t slave) noexcept {
-    const SlavePlace& place = layout_.slaves[slave];
-    const Buffers& buffers = buffers_[place.group];
-    return {std::span{inputs_}.subspan(buffers.inputs + place.inputOffset, place.inputBytes),
-            std::span{outputs_}.subspan(buffers.outputs + place.outputOffset, place.outputBytes),
-            &health_[slave]};
+    const PlannedShare& share = plan_.slaves[slave];
+    return {std::span{inputs_}.subspan(share.inputAt, share.inputBytes),
+            std::span{outputs_}.subspan(share.outputAt, share.outputBytes), &health_[slave]};
 }
 
 void ProcessData::setOperational(std::size_t slave, bool operational,
@@ -53,86 +43,83 @@ void ProcessData::setOperational(std::size_t slave, bool operational,
     health_[slave].alStatusCode = alCode;
 }
 
-void ProcessData::append(FrameSet& frames, std::size_t group) noexcept {
-    const ProcessGroup& data = layout_.groups[group];
-    Buffers& buffers = buffers_[group];
-    // A datagram without data is not worth sending: nobody counts it, and nobody counts a NOP.
-    const auto add = [&frames](wire::Command command, std::uint32_t address, std::size_t size) {
-        return size == 0 ? frames.append(wire::Command::Nop, 0, 0, 1)
-                         : frames.appendLogical(command, address, static_cast<std::uint16_t>(size));
-    };
-    const std::size_t both = std::size_t{data.outputBytes} + data.inputBytes;
-    buffers.first = data.lrw ? add(wire::Command::Lrw, data.logical, both)
-                             : add(wire::Command::Lwr, data.logical, data.outputBytes);
-    if (!data.lrw) buffers.second = add(wire::Command::Lrd, data.inputLogical(), data.inputBytes);
+void ProcessData::forgetDatagrams() noexcept {
+    for (Place& place : places_) place.sent = false;
+}
+
+void ProcessData::append(FrameSet& frames, std::size_t datagram) noexcept {
+    const PlannedDatagram& planned = plan_.datagrams[datagram];
+    places_[datagram] = {frames.appendLogical(planned.command, planned.address, planned.length),
+                         true};
 }
 
 void ProcessData::fill(FrameSet& frames) noexcept {
-    for (std::size_t i = 0; i < buffers_.size(); ++i) {
-        const std::size_t size = layout_.groups[i].outputBytes;
-        if (size == 0) continue;
-        std::memcpy(frames.data(buffers_[i].first).data(), &outputs_[buffers_[i].outputs], size);
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        const PlannedDatagram& planned = plan_.datagrams[i];
+        if (planned.outputBytes == 0 || !places_[i].sent) continue;
+        std::memcpy(frames.data(places_[i].id).data(), &outputs_[planned.outputAt],
+                    planned.outputBytes);
     }
 }
 
 ProcessData::Outcome ProcessData::judge(const FrameSet& frames, std::size_t group) noexcept {
-    const ProcessGroup& data = layout_.groups[group];
-    const Buffers& buffers = buffers_[group];
-    const Reply first = frames.reply(buffers.first);
-    GroupCounters& counters = counters_[group];
-    if (!first.arrived) return {};
-    if (data.lrw) {
-        counters.lastSeen = first.workingCounter;
-        return {true, first.workingCounter == counters.expected,
-                first.data.subspan(data.outputBytes, data.inputBytes)};
+    const PlannedGroup& planned = plan_.groups[group];
+    std::uint16_t seen = 0;
+    bool right = true;
+    for (std::size_t i = planned.first; i < std::size_t{planned.first} + planned.count; ++i) {
+        if (!places_[i].sent) return Outcome::NotSent;
+        const Reply reply = frames.reply(places_[i].id);
+        // All datagrams of a group travel in the same frame.
+        if (!reply.arrived) return Outcome::Lost;
+        seen = static_cast<std::uint16_t>(seen + reply.workingCounter);
+        right = right && reply.workingCounter == plan_.datagrams[i].expected;
     }
-    // Both datagrams travel in the same frame.
-    const Reply second = frames.reply(buffers.second);
-    counters.lastSeen = static_cast<std::uint16_t>(first.workingCounter + second.workingCounter);
-    return {true, first.workingCounter == data.writers && second.workingCounter == data.readers,
-            second.data.first(data.inputBytes)};
+    counters_[group].lastSeen = seen;
+    return right ? Outcome::Right : Outcome::Wrong;
+}
+
+void ProcessData::takeInputs(const FrameSet& frames, std::size_t group) noexcept {
+    const PlannedGroup& planned = plan_.groups[group];
+    for (std::size_t i = planned.first; i < std::size_t{planned.first} + planned.count; ++i) {
+        const PlannedDatagram& datagram = plan_.datagrams[i];
+        if (datagram.inputBytes == 0) continue;
+        std::memcpy(&inputs_[datagram.inputAt],
+                    frames.reply(places_[i].id).data.data() + datagram.inputFrom,
+                    datagram.inputBytes);
+    }
 }
 
 void ProcessData::take(const FrameSet& frames, bool supervised) noexcept {
+    const bool wereGood = allGood_;
     allGood_ = true;
     wrongCounter_ = false;
-    for (std::size_t i = 0; i < buffers_.size(); ++i) {
+    for (std::size_t i = 0; i < good_.size(); ++i) {
         const Outcome outcome = judge(frames, i);
-        if (outcome.right) {
-            if (!outcome.inputs.empty()) {
-                std::memcpy(&inputs_[buffers_[i].inputs], outcome.inputs.data(),
-                            outcome.inputs.size());
-            }
-            if (!buffers_[i].good) markGood(i);
+        good_[i] = outcome == Outcome::Right ? 1 : 0;
+        if (outcome == Outcome::Right) {
+            takeInputs(frames, i);
             continue;
         }
         allGood_ = false;
-        if (!outcome.arrived) {
+        if (outcome == Outcome::Lost) {
             ++counters_[i].lost;
-        } else if (supervised) {
+        } else if (outcome == Outcome::Wrong && supervised) {
             wrongCounter_ = true;
             ++counters_[i].wrong;
         }
-        markBad(i);
     }
+    if (!allGood_ || !wereGood) markSlaves();
 }
 
-void ProcessData::markGood(std::size_t group) noexcept {
-    const ProcessGroup& data = layout_.groups[group];
-    buffers_[group].good = true;
-    for (std::size_t i = data.firstSlave; i < data.firstSlave + data.slaveCount; ++i) {
-        health_[i].inputsFresh = true;
-        health_[i].lostInRow = 0;
-    }
-}
-
-void ProcessData::markBad(std::size_t group) noexcept {
-    const ProcessGroup& data = layout_.groups[group];
-    buffers_[group].good = false;
-    for (std::size_t i = data.firstSlave; i < data.firstSlave + data.slaveCount; ++i) {
-        health_[i].inputsFresh = false;
-        if (health_[i].lostInRow != std::numeric_limits<std::uint32_t>::max()) {
-            ++health_[i].lostInRow;
+void ProcessData::markSlaves() noexcept {
+    for (std::size_t i = 0; i < health_.size(); ++i) {
+        const PlannedShare& share = plan_.slaves[i];
+        core::DeviceHealth& health = health_[i];
+        health.inputsFresh = good_[share.outputGroup] != 0 && good_[share.inputGroup] != 0;
+        if (health.inputsFresh) {
+            health.lostInRow = 0;
+        } else if (health.lostInRow != std::numeric_limits<std::uint32_t>::max()) {
+            ++health.lostInRow;
         }
     }
 }

@@ -6,8 +6,8 @@
 #include <takt/fieldbus/ethercat/cycle_counters.hpp>
 #include <vector>
 
+#include "cycle_plan.hpp"
 #include "frame_set.hpp"
-#include "logical_layout.hpp"
 
 namespace takt::fieldbus::ethercat {
 
@@ -15,11 +15,13 @@ namespace takt::fieldbus::ethercat {
 /// from a datagram whose working counter is exactly the expected one.
 class ProcessData {
 public:
-    /// `layout` must outlive this object.
-    explicit ProcessData(const LogicalLayout& layout);
+    /// `plan` must outlive this object.
+    explicit ProcessData(const CyclePlan& plan);
 
-    /// Appends the datagrams of one group to the open frame.
-    void append(FrameSet& frames, std::size_t group) noexcept;
+    /// rt. No datagram is sent any more until it is appended again.
+    void forgetDatagrams() noexcept;
+    /// rt. Appends a datagram of the plan to the open frame. \pre it carries process data
+    void append(FrameSet& frames, std::size_t datagram) noexcept;
     /// rt. Copies all outputs into their datagrams.
     void fill(FrameSet& frames) noexcept;
     /// rt. Takes the replies of all groups. While `supervised` is false a wrong working counter is
@@ -41,25 +43,19 @@ public:
     void reset() noexcept;
 
 private:
-    struct Buffers {
-        std::size_t outputs{0};  ///< offset of the group's outputs in outputs_
-        std::size_t inputs{0};
-        DatagramId first{0};   ///< LRW, or LWR
-        DatagramId second{0};  ///< LRD
-        bool good{false};
+    struct Place {
+        DatagramId id{0};
+        bool sent{false};
     };
-    struct Outcome {
-        bool arrived{false};
-        bool right{false};
-        std::span<const std::uint8_t> inputs{};
-    };
+    enum class Outcome : std::uint8_t { NotSent, Lost, Wrong, Right };
 
     [[nodiscard]] Outcome judge(const FrameSet& frames, std::size_t group) noexcept;
-    void markGood(std::size_t group) noexcept;
-    void markBad(std::size_t group) noexcept;
+    void takeInputs(const FrameSet& frames, std::size_t group) noexcept;
+    void markSlaves() noexcept;
 
-    const LogicalLayout& layout_;
-    std::vector<Buffers> buffers_;
+    const CyclePlan& plan_;
+    std::vector<Place> places_;  ///< one for each datagram of the plan
+    std::vector<std::uint8_t> good_;
     std::vector<std::uint8_t> outputs_;
     std::vector<std::uint8_t> inputs_;
     std::vector<core::DeviceHealth> health_;

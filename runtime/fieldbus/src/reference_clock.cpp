@@ -7,13 +7,25 @@ namespace takt::fieldbus::ethercat {
 
 namespace {
 
-constexpr std::uint16_t TimeBytes = 8;
+constexpr std::uint16_t WideBytes = 8;
 
 }  // namespace
 
-void ReferenceClock::lead(std::uint16_t station, bool wide) noexcept {
+const PlannedDatagram& ReferenceClock::standard() noexcept {
+    static constexpr PlannedDatagram frmw{.kind = CyclicCommand::Kind::ReferenceTime,
+                                          .command = wire::Command::Frmw,
+                                          .length = WideBytes};
+    return frmw;
+}
+
+void ReferenceClock::lead(std::uint16_t station, bool wide,
+                          const PlannedDatagram& datagram) noexcept {
     station_ = station;
-    wide_ = wide;
+    command_ = datagram.command;
+    address_ =
+        command_ == wire::Command::Armw ? static_cast<std::uint16_t>(datagram.address) : station;
+    length_ = datagram.length;
+    wide_ = wide && length_ >= WideBytes;
     sample_ = {};
 }
 
@@ -24,14 +36,19 @@ void ReferenceClock::forget() noexcept {
 }
 
 void ReferenceClock::append(FrameSet& frames) noexcept {
-    datagram_ = frames.append(wire::Command::Frmw, station_, wire::reg::DcSystemTime, TimeBytes);
+    datagram_ = frames.append(command_, address_, wire::reg::DcSystemTime, length_);
     fill(frames);
 }
 
 void ReferenceClock::fill(FrameSet& frames) const noexcept {
     const core::DcTime guess = sample_.referenceTime + cycle_;
-    wire::store64(frames.data(datagram_), 0,
-                  static_cast<std::uint64_t>(guess.time_since_epoch().count()));
+    const auto time = static_cast<std::uint64_t>(guess.time_since_epoch().count());
+    const std::span<std::uint8_t> data = frames.data(datagram_);
+    if (length_ >= WideBytes) {
+        wire::store64(data, 0, time);
+    } else {
+        wire::store32(data, 0, static_cast<std::uint32_t>(time));
+    }
 }
 
 void ReferenceClock::take(const FrameSet& frames) noexcept {
@@ -39,7 +56,8 @@ void ReferenceClock::take(const FrameSet& frames) noexcept {
     sample_.valid = reply.served();
     if (!sample_.valid) return;
     sample_.sent = frames.sentAt();
-    std::uint64_t time = wire::load64(reply.data, 0);
+    std::uint64_t time = length_ >= WideBytes ? wire::load64(reply.data, 0)
+                                              : std::uint64_t{wire::load32(reply.data, 0)};
     if (!wide_) {
         const auto guess =
             static_cast<std::uint64_t>(at(frames.sentAt()).time_since_epoch().count());

@@ -5,6 +5,7 @@
 #include <takt/core/time.hpp>
 #include <takt/fieldbus/ethercat/dc_sample.hpp>
 
+#include "cycle_plan.hpp"
 #include "dc_line.hpp"
 #include "frame_set.hpp"
 
@@ -17,12 +18,14 @@ public:
     ReferenceClock(core::Duration cycle, core::Duration sync0AfterSend)
         : cycle_{cycle}, sync0AfterSend_{sync0AfterSend} {}
 
-    /// The device whose clock leads, once it is known.
-    void lead(std::uint16_t station, bool wide) noexcept;
+    /// The device whose clock leads, once it is known. A datagram of four bytes carries the low
+    /// half of its time only.
+    void lead(std::uint16_t station, bool wide,
+              const PlannedDatagram& datagram = standard()) noexcept;
     void forget() noexcept;
     [[nodiscard]] bool present() const noexcept { return station_ != 0; }
 
-    /// rt. Appends the FRMW of register 0x0910. \pre present()
+    /// rt. Appends the datagram of register 0x0910, FRMW unless listed otherwise. \pre present()
     void append(FrameSet& frames) noexcept;
     /// rt. Devices before the reference are written with what is sent: puts in the best guess.
     void fill(FrameSet& frames) const noexcept;
@@ -37,9 +40,14 @@ public:
     [[nodiscard]] core::HostTime gridSend(core::HostTime notBefore) const noexcept;
 
 private:
+    [[nodiscard]] static const PlannedDatagram& standard() noexcept;
+
     core::Duration cycle_;
     core::Duration sync0AfterSend_;
     std::uint16_t station_{0};
+    wire::Command command_{wire::Command::Frmw};
+    std::uint16_t address_{0};  ///< station, or position for ARMW
+    std::uint16_t length_{8};
     bool wide_{true};  ///< 64-bit; else the high half is carried on by the host
     DatagramId datagram_{0};
     DcSample sample_{};

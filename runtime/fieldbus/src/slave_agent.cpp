@@ -131,6 +131,13 @@ bool SlaveAgent::nextOfScript(core::HostTime now, Request& request) noexcept {
         endStateStep();
         return false;
     }
+    if (const auto* listed = std::get_if<CommandStep>(&step)) {
+        if (!stepStarted_) startCommandStep(*listed);
+        job_ = Job::Command;
+        if (runner_.next(now, request)) return true;
+        endCommandStep(listed->command);
+        return false;
+    }
     if (const auto* object = std::get_if<ObjectStep>(&step)) startObjectStep(*object);
     return false;  // the mailbox has the next datagram
 }
@@ -138,7 +145,9 @@ bool SlaveAgent::nextOfScript(core::HostTime now, Request& request) noexcept {
 void SlaveAgent::startObjectStep(const ObjectStep& step) noexcept {
     if (stepStarted_) return;
     if (coe_) {
-        stepStarted_ = coe_->client.startWrite(step.address, step.value);
+        stepStarted_ = coe_->client.startWrite(
+            step.address, std::span{step.data},
+            step.completeAccess ? CoeClient::Access::Whole : CoeClient::Access::OneEntry);
     } else {
         fail({ScriptFailure::Kind::ObjectAborted, step.address.index, step.address.subindex,
               NoDictionary, wire::AlState::None, al_});
@@ -171,6 +180,9 @@ void SlaveAgent::take(core::HostTime now, const Reply& reply) noexcept {
         case Job::Register:
             takeRegister(reply);
             break;
+        case Job::Command:
+            takeCommand(now, reply);
+            break;
         case Job::Mailbox: {
             MailboxMessage message;
             if (coe_->mailbox.take(now, reply, message)) coe_->client.take(message);
@@ -178,6 +190,64 @@ void SlaveAgent::take(core::HostTime now, const Reply& reply) noexcept {
             break;
         }
     }
+}
+
+// --- listed commands
+// ------------------------------------------------------------------------------
+
+void SlaveAgent::startCommandStep(const CommandStep& step) noexcept {
+    const ListedCommand& command = step.command;
+    const bool asksForPreOp =
+        writes(command) && command.ado == reg::AlControl && !command.data.empty() &&
+        (command.data[0] & wire::AlStateMask) == static_cast<std::uint8_t>(wire::AlState::PreOp);
+    if (asksForPreOp && al_.state <= wire::AlState::Init && coe_) coe_->client.reset();
+    runner_.start(command);
+    stepStarted_ = true;
+}
+
+void SlaveAgent::takeCommand(core::HostTime now, const Reply& reply) noexcept {
+    const auto* step = std::get_if<CommandStep>(&(*script_)[position_]);
+    if (step == nullptr) return;
+    runner_.take(now, reply);
+    if (reply.served() && readsAt(step->command, reg::AlStatus) && !reply.data.empty()) {
+        al_.state = static_cast<wire::AlState>(reply.data[0] & wire::AlStateMask);
+        al_.error = (reply.data[0] & wire::AlErrorBit) != 0;
+        al_.code = 0;
+    }
+    // Why a device refuses is not in what the list reads; it is asked for before the script ends.
+    if (runner_.result() == CommandRunner::Result::StateRefused) {
+        wantStatus();
+    } else {
+        endCommandStep(step->command);
+    }
+}
+
+void SlaveAgent::endCommandStep(const ListedCommand& command) noexcept {
+    ScriptFailure failure;
+    failure.address = command.ado;
+    failure.number = runner_.seen();
+    switch (runner_.result()) {
+        case CommandRunner::Result::Idle:
+        case CommandRunner::Result::Busy:
+            return;
+        case CommandRunner::Result::Done:
+            stepDone();
+            return;
+        case CommandRunner::Result::Lost:
+        case CommandRunner::Result::WrongCounter:
+            failure.kind = ScriptFailure::Kind::CommandUnanswered;
+            break;
+        case CommandRunner::Result::Mismatch:
+            failure.kind = ScriptFailure::Kind::CommandMismatch;
+            break;
+        case CommandRunner::Result::StateRefused:
+            failure.kind = ScriptFailure::Kind::StateRefused;
+            failure.target =
+                static_cast<wire::AlState>(command.validation->data[0] & wire::AlStateMask);
+            break;
+    }
+    failure.seen = al_;
+    fail(failure);
 }
 
 void SlaveAgent::takeStatus(const Reply& reply) noexcept {

@@ -12,6 +12,7 @@
 #include "acyclic.hpp"
 #include "al_walker.hpp"
 #include "coe_client.hpp"
+#include "command_runner.hpp"
 #include "mailbox.hpp"
 #include "slave_script.hpp"
 
@@ -25,7 +26,9 @@ struct ScriptFailure {
         ObjectAborted,
         StateRefused,
         StateTimedOut,
-        StateSilent
+        StateSilent,
+        CommandUnanswered,  ///< a listed command got no reply or a wrong working counter
+        CommandMismatch,    ///< what it read is not what the list wants
     };
 
     Kind kind{Kind::None};
@@ -34,6 +37,7 @@ struct ScriptFailure {
     std::uint32_t abortCode{0};
     wire::AlState target{wire::AlState::None};
     AlReading seen{};
+    std::uint32_t number{0};  ///< working counter or first bytes that a listed command brought
 };
 
 /// An optional object that the device refused.
@@ -114,7 +118,7 @@ private:
         core::ObjectReply reply_{};
     };
 
-    enum class Job : std::uint8_t { None, Status, Difference, Walk, Register, Mailbox };
+    enum class Job : std::uint8_t { None, Status, Difference, Walk, Register, Command, Mailbox };
 
     struct Coe {
         Coe(const MailboxPlace& place, const wire::MailboxDescription& description)
@@ -130,6 +134,9 @@ private:
     void takeStatus(const Reply& reply) noexcept;
     void takeDifference(const Reply& reply) noexcept;
     void takeRegister(const Reply& reply) noexcept;
+    void startCommandStep(const CommandStep& step) noexcept;
+    void takeCommand(core::HostTime now, const Reply& reply) noexcept;
+    void endCommandStep(const ListedCommand& command) noexcept;
     void afterMailbox() noexcept;
     void endStateStep() noexcept;
     void startObjectStep(const ObjectStep& step) noexcept;
@@ -144,6 +151,7 @@ private:
     std::size_t number_;
     std::optional<Coe> coe_;
     AlWalker walker_;
+    CommandRunner runner_;
     AlReading al_{};
     bool answers_{true};
     std::optional<core::Duration> difference_;

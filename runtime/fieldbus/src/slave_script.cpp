@@ -1,9 +1,13 @@
 #include "slave_script.hpp"
 
 #include <algorithm>
+#include <array>
 #include <takt/wire/byte_io.hpp>
 #include <takt/wire/device_description.hpp>
 #include <takt/wire/registers.hpp>
+
+#include "command_runner.hpp"
+#include "listed_script.hpp"
 
 namespace takt::fieldbus::ethercat {
 
@@ -89,10 +93,10 @@ RegisterStep fmmuStep(std::uint8_t number, const FmmuMap& map) {
 
 ObjectStep objectStep(std::uint16_t index, std::uint8_t subindex, std::uint32_t number,
                       std::uint8_t size, bool required, std::string origin) {
-    ObjectStep step{{index, subindex}, {}, required, std::move(origin)};
-    wire::store32(step.value.bytes, 0, number);
-    step.value.size = size;
-    return step;
+    std::vector<std::uint8_t> data(4);
+    wire::store32(data, 0, number);
+    data.resize(size);
+    return {{index, subindex}, std::move(data), required, std::move(origin)};
 }
 
 void append(Script& script, Script&& more) {
@@ -102,17 +106,18 @@ void append(Script& script, Script&& more) {
 // --- objects
 // -------------------------------------------------------------------------------------------
 
+}  // namespace
+
 Script startupSteps(const SlaveParams& slave) {
     Script script;
     for (const StartupObject& object : slave.startup) {
-        ObjectStep step{{object.index, object.subindex}, {}, object.required, object.origin};
-        const std::size_t size = std::min(object.data.size(), step.value.bytes.size());
-        std::copy_n(object.data.begin(), size, step.value.bytes.begin());
-        step.value.size = static_cast<std::uint8_t>(size);
-        script.emplace_back(std::move(step));
+        script.emplace_back(ObjectStep{
+            {object.index, object.subindex}, object.data, object.required, object.origin});
     }
     return script;
 }
+
+namespace {
 
 bool isUsed(const SlaveParams& slave, std::uint16_t pdo) {
     const auto same = [pdo](const PdoParams& params) { return params.index == pdo; };
@@ -366,12 +371,20 @@ Script makePdoScript(const SlaveParams& slave) {
 }
 
 void setSyncStart(Script& armSync, const SlaveParams& slave, core::DcTime start) {
+    std::array<std::uint8_t, 8> own{};
+    wire::store64(
+        own, 0,
+        static_cast<std::uint64_t>((start + slave.dc.sync0Shift).time_since_epoch().count()));
+    const auto enter = [&own](std::vector<std::uint8_t>& data) {
+        std::copy_n(own.begin(), std::min(own.size(), data.size()), data.begin());
+    };
     for (Step& step : armSync) {
-        auto* write = std::get_if<RegisterStep>(&step);
-        if (write != nullptr && write->address == reg::DcStartTime) {
-            const core::DcTime own = start + slave.dc.sync0Shift;
-            wire::store64(write->data, 0,
-                          static_cast<std::uint64_t>(own.time_since_epoch().count()));
+        if (auto* write = std::get_if<RegisterStep>(&step)) {
+            if (write->address == reg::DcStartTime) enter(write->data);
+        } else if (auto* listed = std::get_if<CommandStep>(&step)) {
+            if (listed->command.ado == reg::DcStartTime && writes(listed->command)) {
+                enter(listed->command.data);
+            }
         }
     }
 }
@@ -381,11 +394,13 @@ SlaveScripts makeScripts(const NetworkParams& network, std::size_t slave,
     const SlaveParams& params = network.slaves[slave];
     const SlavePlace& place = layout.slaves[slave];
     const wire::StateTimeouts& timeouts = deviceOf(params).timeouts;
+    if (params.listed) return makeListedScripts(params);
     SlaveScripts scripts;
     scripts.toPreOp = preOpScript(params, place, layout.groups[place.group]);
     scripts.armSync = armSteps(network, params);
     scripts.toSafeOp = {StateStep{AlState::SafeOp, timeouts.safeOpOp}};
     scripts.toOp = {StateStep{AlState::Op, timeouts.safeOpOp}};
+    scripts.recover = scripts.toOp;
     scripts.backToSafeOp = {StateStep{AlState::SafeOp, timeouts.backToSafeOp}};
     scripts.backToPreOp = {StateStep{AlState::PreOp, timeouts.backToInit}};
     append(scripts.backToPreOp, unmapSteps(params));

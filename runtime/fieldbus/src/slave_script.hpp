@@ -23,9 +23,10 @@ struct RegisterStep {
 
 struct ObjectStep {
     core::ObjectAddress address{};
-    core::ObjectValue value{};
+    std::vector<std::uint8_t> data;
     bool required{true};
     std::string origin;  ///< who wants it, for messages
+    bool completeAccess{false};
 };
 
 struct StateStep {
@@ -33,15 +34,23 @@ struct StateStep {
     core::Duration timeout{0};
 };
 
-using Step = std::variant<RegisterStep, ObjectStep, StateStep>;
+/// A command of a list, with its number there.
+struct CommandStep {
+    ListedCommand command;
+    std::size_t number{0};
+};
+
+using Step = std::variant<RegisterStep, ObjectStep, StateStep, CommandStep>;
 /// What has to be done with one slave to get it from one state to the next, in order.
 using Script = std::vector<Step>;
 
 struct SlaveScripts {
     Script toPreOp;  ///< from INIT: mailbox, PREOP, objects, PDOs, SyncManagers, FMMUs, watchdog
+    Script inPreOp;  ///< objects that a list wants written on the way to SAFEOP, then the axes' own
     Script armSync;  ///< SYNC0; the start time is entered with setSyncStart
     Script toSafeOp;
     Script toOp;
+    Script recover;  ///< to OP again, from SAFEOP with an error
     Script backToSafeOp;
     Script backToPreOp;  ///< ends with SYNC0 stopped and process data unmapped
     Script backToInit;
@@ -56,6 +65,9 @@ struct SlaveScripts {
 /// Objects that make the device use the configured PDOs (ETG.1000.6 5.6.7.4): assignments emptied,
 /// mappings emptied, entries, counts, assignments. Empty when the device's defaults are used.
 [[nodiscard]] Script makePdoScript(const SlaveParams& slave);
+
+/// The start-up objects of a slave.
+[[nodiscard]] Script startupSteps(const SlaveParams& slave);
 
 /// Enters the start of the SYNC0 grid; the slave's own shift is added.
 void setSyncStart(Script& armSync, const SlaveParams& slave, core::DcTime start);

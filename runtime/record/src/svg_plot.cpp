@@ -222,15 +222,27 @@ void Painter::panelGrid(const Range& range) {
 }
 
 void Painter::panelLegend(const PlotPanel& panel) {
+    constexpr double lineHeight = 17.0;
+    constexpr auto mostLines = static_cast<std::size_t>(PanelHeight / lineHeight) + 1;
+    const auto shown = static_cast<std::size_t>(std::count_if(
+        panel.curves.begin(), panel.curves.end(),
+        [this](const PlotCurve& curve) { return !data_.curve(curve.column).empty(); }));
     double py = y_ + 14.0;
+    std::size_t lines = 0;
     for (const PlotCurve& curve : panel.curves) {
         if (data_.curve(curve.column).empty()) continue;
+        if (++lines == mostLines && shown > mostLines) {
+            // The next panel's legend begins below.
+            text(Right + 40.0, py, "key", "start",
+                 "and " + std::to_string(shown - mostLines + 1) + " more");
+            return;
+        }
         const bool commanded = curve.style == CurveStyle::Commanded;
         out_ += "<path d=\"M" + pixel(Right + 12.0) + ' ' + pixel(py - 4.0) + "h22\" class=\"";
         out_ += commanded ? "set" : "act";
         out_ += std::string{"\" stroke=\""} + curveColour(curve.colour) + "\"/>\n";
         text(Right + 40.0, py, "key", "start", curve.label);
-        py += 17.0;
+        py += lineHeight;
     }
 }
 

@@ -137,7 +137,7 @@ void Drawing::way(const std::vector<TopViewData::Place>& places) {
         svg::appendPixel(path, point.y);
         command = 'L';
     }
-    if (!path.empty()) out_ += "<path class=\"way\" d=\"" + path + "\"/>\n";
+    if (points.size() > 1) out_ += "<path class=\"way\" d=\"" + path + "\"/>\n";
 }
 
 void Drawing::dot(const TopViewData::Place& place) {
@@ -158,6 +158,7 @@ std::string Drawing::draw() {
     for (const TopViewShape& one : spec_.shapes) shape(one, 0.0, "keepout");
     for (const auto& places : data_.ways()) way(places);
     for (const auto& places : data_.ways()) {
+        if (places.size() < 2) continue;  // it only stood there
         dot(places.front());
         dot(places.back());
     }
@@ -219,6 +220,7 @@ void TopViewData::thin() {
         places_ = 0;
         for (std::vector<Place>& way : ways_) {
             std::vector<svg::Point> points;
+            points.reserve(way.size());
             for (const Place& place : way) points.push_back({place.x, place.y});
             way.clear();
             for (const svg::Point& point : svg::simplified(points, tolerance_))

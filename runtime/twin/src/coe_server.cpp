@@ -86,7 +86,8 @@ std::size_t CoeServer::startDownload(std::span<const std::uint8_t> request,
     const std::uint16_t index = wire::load16(request, 1);
     const std::uint8_t subindex = request[3];
     transfer_ = Transfer::None;
-    if ((command & mbx::CompleteAccess) != 0) {
+    const bool whole = (command & mbx::CompleteAccess) != 0;
+    if (whole && !completeAccess_) {
         return abortTransfer(reply, index, subindex, abortcode::NoCompleteAccess);
     }
     std::span<const std::uint8_t> data;
@@ -103,6 +104,7 @@ std::size_t CoeServer::startDownload(std::span<const std::uint8_t> request,
         data = request.subspan(NormalDataAt);
         data = data.first(std::min<std::size_t>(data.size(), size));
         if (data.size() < size) {
+            if (whole) return abortTransfer(reply, index, subindex, abortcode::TooLongForMailbox);
             if (size > LargestTransfer) return abortTransfer(reply, index, subindex, OutOfMemory);
             transfer_ = Transfer::Download;
             index_ = index;
@@ -114,9 +116,9 @@ std::size_t CoeServer::startDownload(std::span<const std::uint8_t> request,
             return header(reply, mbx::DownloadResponse, index, subindex);
         }
     }
-    if (const std::uint32_t code = download(index, subindex, data, state)) {
-        return abortTransfer(reply, index, subindex, code);
-    }
+    const std::uint32_t code = whole ? downloadWhole(index, subindex, data, state)
+                                     : download(index, subindex, data, state);
+    if (code != 0) return abortTransfer(reply, index, subindex, code);
     return header(reply, mbx::DownloadResponse, index, subindex);
 }
 
@@ -249,6 +251,35 @@ std::uint32_t CoeServer::download(std::uint16_t index, std::uint8_t subindex,
     const auto end = std::copy(data.begin(), data.end(), value.begin());
     std::fill(end, value.end(), std::uint8_t{0});
     return 0;
+}
+
+std::uint32_t CoeServer::downloadWhole(std::uint16_t index, std::uint8_t first,
+                                       std::span<const std::uint8_t> data,
+                                       wire::AlState state) noexcept {
+    constexpr std::size_t countBytes = 2;  // sub-index 0 and what fills it up
+    if (first > 1) return abortcode::NoSubindex;
+    if (first == 0 && data.size() < countBytes) return abortcode::LengthTooLow;
+    const bool governed = PdoConfiguration::governs(index);
+    const auto count = first == 0 ? data.first(1) : std::span<const std::uint8_t>{};
+    // Entries of PDOs may change only while their count is zero.
+    constexpr std::array<std::uint8_t, 1> none{0};
+    if (governed && !count.empty()) {
+        if (const std::uint32_t code = download(index, 0, none, state)) return code;
+    }
+    std::size_t at = first == 0 ? countBytes : 0;
+    for (unsigned sub = 1; sub <= 0xFF && at < data.size(); ++sub) {
+        const auto subindex = static_cast<std::uint8_t>(sub);
+        const DictionaryEntry* const entry = dictionary_.find(index, subindex);
+        if (entry == nullptr || entry->size == 0) break;
+        if (at + entry->size > data.size()) return abortcode::LengthTooLow;
+        const auto value = data.subspan(at, entry->size);
+        if (const std::uint32_t code = download(index, subindex, value, state)) return code;
+        at += entry->size;
+    }
+    if (at < data.size()) return abortcode::LengthTooHigh;
+    const DictionaryEntry* const counter = dictionary_.find(index, 0);
+    const bool counted = !count.empty() && counter != nullptr && counter->writable;
+    return counted ? download(index, 0, count, state) : 0;
 }
 
 }  // namespace takt::twin

@@ -12,11 +12,13 @@
 namespace takt::twin {
 
 /// The SDO server of a device (ETG.1000.6 clause 5.6.2): expedited, normal and segmented transfers.
-/// Complete access is refused, which masters must take for an answer.
+/// Complete access is for downloads that one message holds, and for devices that offer it; all
+/// other is refused, which masters must take for an answer.
 class CoeServer {
 public:
-    CoeServer(const DriveTraits& traits, ObjectDictionary& dictionary, PdoConfiguration& pdos)
-        : traits_{traits}, dictionary_{dictionary}, pdos_{pdos} {}
+    CoeServer(const DriveTraits& traits, ObjectDictionary& dictionary, PdoConfiguration& pdos,
+              bool completeAccess)
+        : traits_{traits}, dictionary_{dictionary}, pdos_{pdos}, completeAccess_{completeAccess} {}
 
     /// rt. Answers one SDO request. `request` and `reply` begin behind the CoE header.
     /// \return bytes of the reply; 0 = no reply
@@ -27,6 +29,11 @@ public:
     /// rt. Writes an object as an SDO download does. \return 0 or an abort code
     std::uint32_t download(std::uint16_t index, std::uint8_t subindex,
                            std::span<const std::uint8_t> data, wire::AlState state) noexcept;
+
+    /// rt. The same for all sub-indices from `first` (0 or 1) on, packed as ETG.1000.6 5.6.2.5 has
+    /// it: sub-index 0 with a byte behind it, then the others by bytes.
+    std::uint32_t downloadWhole(std::uint16_t index, std::uint8_t first,
+                                std::span<const std::uint8_t> data, wire::AlState state) noexcept;
 
 private:
     static constexpr std::size_t LargestTransfer = 1024;
@@ -50,6 +57,7 @@ private:
     const DriveTraits& traits_;
     ObjectDictionary& dictionary_;
     PdoConfiguration& pdos_;
+    bool completeAccess_;
 
     Transfer transfer_{Transfer::None};
     std::uint16_t index_{0};

@@ -62,12 +62,28 @@ enum class DriveVelocityUnit : std::uint8_t {
 
 enum class PowerOffMode : std::uint8_t { Ramp, Immediate };
 
+/// Where the drive's objects lie in the device's process data. Resolved once at start; a slot that
+/// is not present is not mapped.
+struct DriveBindings {
+    core::PdoSlot controlword;  // outputs
+    core::PdoSlot modeOfOperation;
+    core::PdoSlot targetPosition;
+    core::PdoSlot statusword;  // inputs
+    core::PdoSlot modeDisplay;
+    core::PdoSlot actualPosition;
+    core::PdoSlot errorCode;
+    core::PdoSlot digitalInputs;
+    core::PdoSlot followingError;
+    core::PdoSlot actualTorque;
+};
+
 /// What is known of the drive model beside its description file.
 struct DriveParams {
     std::string slave;    ///< name of the device on the network
     std::string profile;  ///< "cd300e", "ra" or "generic"
     DriveVelocityUnit velocityUnit{DriveVelocityUnit::CountsPerSecond};
     core::Quantity<0, -1> maxMotorSpeed{};  ///< turns per second; 0 = not told
+    DriveBindings bound;  ///< slots that are told; the others are found by their objects
 };
 
 struct AxisParams {
@@ -82,21 +98,6 @@ struct AxisParams {
     bool vertical{false};
     std::uint32_t queueDepth{8};
     std::string origin;  ///< "machine.xml:40"
-};
-
-/// Where the drive's objects lie in the device's process data. Resolved once at start; a slot that
-/// is not present is not mapped.
-struct DriveBindings {
-    core::PdoSlot controlword;  // outputs
-    core::PdoSlot modeOfOperation;
-    core::PdoSlot targetPosition;
-    core::PdoSlot statusword;  // inputs
-    core::PdoSlot modeDisplay;
-    core::PdoSlot actualPosition;
-    core::PdoSlot errorCode;
-    core::PdoSlot digitalInputs;
-    core::PdoSlot followingError;
-    core::PdoSlot actualTorque;
 };
 
 }  // namespace takt::axis

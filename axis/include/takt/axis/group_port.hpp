@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <takt/axis/command_book.hpp>
 #include <takt/axis/group_command.hpp>
@@ -9,6 +10,7 @@
 #include <takt/axis/route_desk.hpp>
 #include <takt/core/fixed_vector.hpp>
 #include <takt/core/result.hpp>
+#include <utility>
 
 namespace takt::axis {
 
@@ -18,7 +20,10 @@ public:
     static constexpr std::size_t MaxCommands = 34;  ///< per program cycle: a whole queue
 
     /// `number` tells the ports of one group apart; 1 to 65535.
-    explicit GroupPort(std::uint16_t number) noexcept : book_{number} {}
+    /// `routes` is the desk of all ports of one program.
+    explicit GroupPort(std::uint16_t number,
+                       std::shared_ptr<RouteDesk> routes = std::make_shared<RouteDesk>())
+        : book_{number}, routes_{std::move(routes)} {}
     GroupPort(const GroupPort&) = delete;
     GroupPort& operator=(const GroupPort&) = delete;
 
@@ -36,7 +41,7 @@ public:
     [[nodiscard]] core::Result<Ids, ErrorId> submit(
         std::span<const GroupCommand> requests) noexcept;
     /// rt. Where ways of this group around its keep-outs are asked for.
-    [[nodiscard]] RouteDesk& routes() noexcept { return routes_; }
+    [[nodiscard]] RouteDesk& routes() noexcept { return *routes_; }
     /// rt. Where the command stands.
     [[nodiscard]] CommandStatus status(CommandId id) const noexcept { return book_.status(id); }
 
@@ -64,7 +69,7 @@ private:
     GroupView view_{};
     core::FixedVector<GroupCommand, MaxCommands> commands_{};
     CommandBook book_;
-    RouteDesk routes_;
+    std::shared_ptr<RouteDesk> routes_;
     std::uint32_t generation_{1};
 };
 

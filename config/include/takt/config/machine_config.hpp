@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <takt/axis/axis_params.hpp>
 #include <takt/axis/group_params.hpp>
 #include <takt/axis/machine_stop_params.hpp>
+#include <takt/bridge/bridge_params.hpp>
 #include <takt/fieldbus/fieldbus_params.hpp>
 #include <takt/planner/roadmap/roadmap_params.hpp>
 #include <takt/program/program_params.hpp>
@@ -25,6 +27,10 @@ struct MachineConfig {
     std::vector<planner::roadmap::ObstacleParams> obstacles;  ///< one at most for each group
     std::vector<program::ProgramParams> programs;
     axis::MachineStopParams machineStop;  ///< inputs name slaves and mapped entries that exist
+    bridge::BridgeParams bridge;
+    /// What stands on the simulated network, one for each slave; what is configured unless the file
+    /// says otherwise.
+    std::vector<std::shared_ptr<const wire::DeviceDescription>> twinDevices;
     twin::TwinParams twin;  ///< one device for each slave, defaults where <Twin> is silent
 };
 

@@ -19,8 +19,8 @@ class MC_MovePath : public GroupMoveBlock {
 public:
     bool Done{false};
 
-    /// rt. One call per cycle. `PathData` is taken over at the rising edge.
-    void operator()(axis::GroupRef group, const MC_PATH_DATA_REF& PathData) noexcept;
+    /// rt. One call per cycle. `path` (PathData of the standard) is taken over at the rising edge.
+    void operator()(axis::GroupRef group, const MC_PATH_DATA_REF& path) noexcept;
 
 private:
     [[nodiscard]] core::Result<axis::CommandId, axis::ErrorId> submit(
@@ -31,7 +31,7 @@ private:
 };
 
 /// Plans a way of the group from where it stands (or where its last motion ends) to Goal, around
-/// the keep-outs of the machine file, as a job that never holds the cycle up. PathData is written
+/// the keep-outs of the machine file, as a job that never holds the cycle up. The path is written
 /// when Done comes; MC_MovePath runs it.
 ///
 /// The same start, goal and seed give the same path, on any computer. ErrorID tells apart
@@ -56,7 +56,7 @@ public:
     double Duration{0.0};      ///< s: of the path at the limits of group and axes
 
     /// rt. One call per cycle.
-    void operator()(axis::GroupRef group, MC_PATH_DATA_REF& PathData) noexcept;
+    void operator()(axis::GroupRef group, MC_PATH_DATA_REF& path) noexcept;
 
 private:
     void begin() noexcept;

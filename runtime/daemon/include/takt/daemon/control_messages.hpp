@@ -77,8 +77,11 @@ struct StatusReport {
     std::uint64_t framesLost{0};
     std::uint64_t framesLate{0};
     std::uint64_t workingCounterErrors{0};
-    std::string machineStop{};  ///< its cause; empty = not stopped
-    std::string owner{};        ///< who operates; empty = nobody
+    std::string machineStop{};         ///< its cause; empty = not stopped
+    std::string owner{};               ///< who operates; empty = nobody
+    std::int64_t bridgeProcess{0};     ///< 0 = there is none now
+    std::uint64_t bridgeStarts{0};     ///< 0 = the machine has no bridge
+    std::uint64_t bridgePublished{0};  ///< status samples since its last start
     std::vector<AxisReport> axes;
     std::vector<GroupReport> groups;
     std::vector<ProgramReport> programs;

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <takt/core/time.hpp>
+#include <takt/fieldbus/listed_params.hpp>
 #include <vector>
 
 namespace takt::wire {
@@ -58,6 +60,12 @@ struct SlaveParams {
     DcParams dc;
     core::Duration watchdog{std::chrono::milliseconds{100}};  ///< process-data watchdog
     std::string origin;                                       ///< "machine.xml:12", for messages
+    /// Bits before the process data in the first byte of the device's image; 0 to 7.
+    std::uint8_t outputShift{0};
+    std::uint8_t inputShift{0};
+    /// Present on a listed network: registers are written as listed, not as worked out from the
+    /// device. Start-up objects are written in PREOP behind the listed ones.
+    std::optional<ListedSlave> listed;
 };
 
 /// One EtherCAT segment and its cycle.
@@ -68,7 +76,8 @@ struct NetworkParams {
     core::Duration sendJitter{std::chrono::microseconds{50}};
     std::uint32_t dcDriftFrames{10000};  ///< most static drift frames before SAFEOP
     core::Duration dcLimit{std::chrono::microseconds{1}};  ///< 0x092C of every device before OP
-    std::string interface;  ///< of the real network, empty = not told
+    std::string interface;                ///< of the real network, empty = not told
+    std::optional<ListedNetwork> listed;  ///< then every slave is listed too
 };
 
 }  // namespace takt::fieldbus

@@ -17,6 +17,7 @@ enum class Direction : std::uint8_t { Outputs, Inputs };
                                       std::uint16_t index, std::uint8_t subindex) noexcept;
 
 /// Bytes of process data in one direction: the mapped bits rounded up; the SyncManager's length.
+/// The image of the device has one more where a shift makes the data straddle a byte.
 [[nodiscard]] std::uint32_t processDataBytes(const SlaveParams& slave,
                                              Direction direction) noexcept;
 

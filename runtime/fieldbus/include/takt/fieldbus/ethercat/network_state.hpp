@@ -27,11 +27,14 @@ struct NetworkProblem {
         None,
         StateRefused,  ///< with the device's AL status code
         StateTimedOut,
-        Silent,          ///< the device does not answer
-        FellBack,        ///< was in a higher state and left it
-        WorkingCounter,  ///< process data never came back with the expected working counter
-        ClockNotLocked,  ///< the host did not get onto the SYNC0 grid
-        DeviceClock,     ///< a device's clock stays away from the reference; `number` in ns
+        Silent,             ///< the device does not answer
+        FellBack,           ///< was in a higher state and left it
+        WorkingCounter,     ///< process data never came back with the expected working counter
+        ClockNotLocked,     ///< the host did not get onto the SYNC0 grid
+        ObjectRefused,      ///< listed object `item`, abort code in `number`
+        CommandUnanswered,  ///< listed command `item`; `number` is its working counter
+        CommandMismatch,    ///< listed command `item`; `number` has the first bytes read
+        DeviceClock,        ///< a device's clock stays away from the reference; `number` in ns
     };
     static constexpr std::uint16_t NoSlave = 0xFFFF;
 
@@ -41,6 +44,7 @@ struct NetworkProblem {
     wire::AlState seen{wire::AlState::None};
     std::uint16_t alStatusCode{0};
     std::int64_t number{0};
+    std::uint32_t item{0};
     core::CycleNumber cycle{0};
 };
 
