@@ -239,7 +239,7 @@ TEST(Group, BlendsACornerThatIsAskedForWhileMoving) {
     GroupRig rig;
     rig.start();
     const auto first = rig.send(lineTo({20.0, 0.0, 0.0}));
-    rig.cycles(40);
+    rig.cycles(100);
     const auto second = rig.send(blended(lineTo({20.0, 20.0, 0.0}), 0.2));
     double nearest = 100.0;
     while (rig.phase(second) != CommandPhase::Done && rig.k < 5000) {
