@@ -68,11 +68,11 @@ TEST_F(Interface, ScansListsRunsAndTakesAMachineDownAgain) {
 /// exchanged.
 std::string listedMachine(const std::string& folder, const std::string& from,
                           const std::string& to) {
-    const std::string sample = Source + "/samples/06_eni/";
+    const std::string sample = sourceFolder + "/samples/06_eni/";
     std::string machine = readFile(sample + "machine.xml");
     std::string eni = readFile(sample + "line.eni.xml");
     for (std::size_t at = 0; (at = machine.find("../devices/", at)) != std::string::npos;) {
-        machine.replace(at, 3, Source + "/samples/");
+        machine.replace(at, 3, sourceFolder + "/samples/");
     }
     for (std::size_t at = 0; !from.empty() && (at = eni.find(from, at)) != std::string::npos;) {
         eni.replace(at, from.size(), to);

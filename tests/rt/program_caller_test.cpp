@@ -44,9 +44,11 @@ protected:
         program::ProgramPtr program{
             new Scripted{script_},
             program::ProgramDeleter{nullptr, [](program::Program* p) { delete p; }}};
-        work_ = std::make_unique<ProgramWork>(std::move(program), 0, std::uint16_t{1});
+        work_ =
+            std::make_unique<ProgramWork>(std::move(program), 0, RouteDesks{}, std::uint16_t{1});
         work_->setMachine(
-            std::make_unique<program::Machine>(std::vector<program::Machine::NamedAxis>{}, 1ms));
+            std::make_unique<program::Machine>(std::vector<program::Machine::NamedAxis>{},
+                                               std::vector<program::Machine::NamedGroup>{}, 1ms));
     }
     std::unique_ptr<ThreadCaller> caller(core::Duration budget, bool lenient = false) {
         return std::make_unique<ThreadCaller>(ThreadPlace{"test", 0, -1},
