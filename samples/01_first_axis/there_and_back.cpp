@@ -55,7 +55,12 @@ public:
         return ProgramState::Running;
     }
 
-    void describe(takt::Inspector& inspector) override { inspector.watch("step", step_); }
+    void describe(takt::Inspector& inspector) override {
+        inspector.watch("step", step_);
+        inspector.block("power", power_);
+        inspector.block("there", there_);
+        inspector.block("back", back_);
+    }
 
 private:
     enum class Step : int { PowerOn, There, Back, Halt, Home, PowerOff };

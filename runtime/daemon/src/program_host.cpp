@@ -195,6 +195,7 @@ std::string ProgramHost::watches() const {
     if (phase_ == ProgramPhase::Abandoned) return {};  // it may be writing them
     std::string text;
     for (const program::Watch& watch : inspector_.watches()) {
+        if (watch.pin) continue;  // many, and for looking at while it runs
         text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", watch.name, watch.text());
     }
     return text;

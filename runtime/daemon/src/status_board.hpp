@@ -40,7 +40,7 @@ struct GroupEntry {
 };
 
 struct ProgramEntry {
-    static constexpr std::size_t MostWatches = 32;
+    static constexpr std::size_t MostWatches = 64;
 
     ProgramPhase phase{};
     bool held{false};
