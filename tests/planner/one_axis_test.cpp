@@ -47,7 +47,7 @@ TEST(OneAxis, BringsAStartOutsideTheLimitsBack) {
 
 TEST(OneAxis, SolvesAMillionProblems) {
 #ifdef NDEBUG
-    constexpr int count = 250000;
+    constexpr int count = 500000;
 #else
     constexpr int count = 10000;  // sanitizers and debuggers are slow
 #endif
